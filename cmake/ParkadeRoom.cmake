@@ -1,0 +1,73 @@
+# SPDX-FileCopyrightText: 2026 The Parkade authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# One room = one folder under src/parkade = one target parkade::NAME, with its tests beside its code.
+
+# Flags that every Parkade target is compiled with; private, so that users of the library are free.
+add_library(parkade_flags INTERFACE)
+target_compile_options(parkade_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+                                               -Woverloaded-virtual)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  # False positives on std::string operator+ (GCC bug 105651).
+  target_compile_options(parkade_flags INTERFACE -Wno-restrict)
+endif()
+if(PARKADE_WARNINGS_AS_ERRORS)
+  target_compile_options(parkade_flags INTERFACE -Werror)
+endif()
+if(PARKADE_NATIVE)
+  # Global: Eigen's alignment must be the same in every translation unit.
+  add_compile_options(-march=native)
+endif()
+if(PARKADE_SANITIZE)
+  # Global as well: GoogleTest's and our own objects must agree. vptr needs RTTI of OpenCV's privates.
+  add_compile_options(-fsanitize=${PARKADE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${PARKADE_SANITIZE})
+endif()
+if(CMAKE_BUILD_TYPE STREQUAL "Debug")
+  add_compile_definitions(EIGEN_INITIALIZE_MATRICES_BY_NAN)
+endif()
+
+# parkade_room(NAME SOURCES a.cpp ... DEPS targets ... [PRIVATE_DEPS targets ...]
+#              [TESTS a_test.cpp ...] [TEST_DEPS targets ...])
+# DEPS name rooms (geometry) or outside targets (Eigen3::Eigen).
+function(parkade_room NAME)
+  cmake_parse_arguments(ROOM "" "" "SOURCES;DEPS;PRIVATE_DEPS;TESTS;TEST_DEPS" ${ARGN})
+  set(TARGET parkade_${NAME})
+  if(ROOM_SOURCES)
+    add_library(${TARGET} STATIC ${ROOM_SOURCES})
+    set(SCOPE PUBLIC)
+    target_link_libraries(${TARGET} PRIVATE $<BUILD_INTERFACE:parkade_flags>)
+    set_target_properties(${TARGET} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  else()
+    add_library(${TARGET} INTERFACE)
+    set(SCOPE INTERFACE)
+  endif()
+  add_library(parkade::${NAME} ALIAS ${TARGET})
+  set_target_properties(${TARGET} PROPERTIES EXPORT_NAME ${NAME})
+  set_property(GLOBAL APPEND PROPERTY PARKADE_ROOMS ${NAME})
+  target_include_directories(${TARGET} ${SCOPE} $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/src>
+                                                $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  foreach(DEP IN LISTS ROOM_DEPS)
+    if(TARGET parkade_${DEP})
+      set(DEP parkade::${DEP})
+    endif()
+    target_link_libraries(${TARGET} ${SCOPE} ${DEP})
+  endforeach()
+  foreach(DEP IN LISTS ROOM_PRIVATE_DEPS)
+    target_link_libraries(${TARGET} PRIVATE $<BUILD_INTERFACE:${DEP}>)
+  endforeach()
+  if(PARKADE_BUILD_TESTS AND ROOM_TESTS)
+    parkade_test(parkade_${NAME}_test SOURCES ${ROOM_TESTS}
+                 DEPS parkade::${NAME} ${ROOM_TEST_DEPS} LABEL ${NAME})
+  endif()
+endfunction()
+
+# parkade_test(NAME SOURCES ... DEPS ... LABEL room): one GoogleTest program, each case one ctest.
+function(parkade_test NAME)
+  cmake_parse_arguments(TEST "" "LABEL" "SOURCES;DEPS" ${ARGN})
+  add_executable(${NAME} ${TEST_SOURCES})
+  target_link_libraries(${NAME} PRIVATE parkade_flags ${TEST_DEPS} GTest::gmock GTest::gtest_main)
+  target_compile_definitions(${NAME} PRIVATE PARKADE_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  gtest_discover_tests(${NAME} DISCOVERY_MODE PRE_TEST
+                       PROPERTIES LABELS "${TEST_LABEL}" TIMEOUT 300)
+endfunction()

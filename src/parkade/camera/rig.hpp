@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "parkade/camera/camera.hpp"
+#include "parkade/core/result.hpp"
+#include "parkade/core/time.hpp"
+#include "parkade/geometry/se3.hpp"
+
+namespace parkade {
+
+/// One camera of a rig.
+struct RigCamera {
+  std::string name;  ///< folder name in a sequence: cam0, cam1, ...
+  Camera camera;
+  SE3 T_vehicle_cam;
+  TimeNs time_offset_ns = 0;  ///< added to a recorded stamp gives the time on the IMU's clock
+  double rate_hz = 0.0;       ///< 0 where unknown
+  std::string mask_path;      ///< 8-bit picture, 0 where the own body hides the world; or empty
+};
+
+/// Where the IMU sits and how noisy it is (continuous-time densities, Kalibr's field names).
+struct ImuCalibration {
+  SE3 T_vehicle_imu;
+  double gyroscope_noise_density = 2.44e-4;      ///< rad/s/sqrt(Hz)       (default: Bosch BMI088)
+  double gyroscope_random_walk = 2.0e-5;         ///< rad/s^2/sqrt(Hz)
+  double accelerometer_noise_density = 1.86e-3;  ///< m/s^2/sqrt(Hz)
+  double accelerometer_random_walk = 2.0e-4;     ///< m/s^3/sqrt(Hz)
+  double rate_hz = 200.0;
+};
+
+/// The car's body as a box on the ground plane, in the vehicle frame (origin below the rear axle).
+struct VehicleShape {
+  double wheelbase = 2.85;      ///< m
+  double track = 1.6;           ///< m, between the wheels of an axle
+  double front_overhang = 0.9;  ///< m, ahead of the front axle
+  double rear_overhang = 1.0;   ///< m, behind the rear axle
+  double width = 1.86;          ///< m
+  double height = 1.48;         ///< m
+};
+
+/// All sensors of a car and how they sit on it.
+struct Rig {
+  std::string name;
+  std::vector<RigCamera> cameras;
+  ImuCalibration imu;
+  std::optional<VehicleShape> vehicle;  ///< absent where the recording has no car
+
+  /// Index of a camera by name, or -1.
+  [[nodiscard]] int find(const std::string& camera_name) const;
+  /// Only the named cameras, in the order given; fails on an unknown name (and lists the known).
+  [[nodiscard]] Result<Rig> subset(const std::vector<std::string>& names) const;
+};
+
+/// Reads rig.yaml (docs/formats.md). Fails with file, line, key and value on a missing or unknown
+/// key, an unknown model, a matrix that is no rotation, a number that is not finite.
+Result<Rig> readRig(const std::string& path);
+
+/// Writes a rig that readRig reads back to the same bits.
+Status writeRig(const Rig& rig, const std::string& path);
+
+/// Reads a Kalibr camera chain and, where not empty, a Kalibr IMU file, as Kalibr writes them. The
+/// vehicle frame is then the IMU's.
+Result<Rig> readKalibr(const std::string& camchain_path, const std::string& imu_path);
+
+/// Reads the sensor.yaml files of an EuRoC/ASL folder (mav0/cam*, mav0/imu0). The vehicle frame is
+/// then the body frame.
+Result<Rig> readEurocRig(const std::string& sequence_path);
+
+/// rig.yaml of a sequence folder if there, else its sensor.yaml files.
+Result<Rig> readSequenceRig(const std::string& sequence_path);
+
+}  // namespace parkade

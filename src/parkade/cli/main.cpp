@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <exception>
+
+#include "parkade/cli/command.hpp"
+#include "parkade/core/log.hpp"
+
+namespace parkade::cli {
+namespace {
+
+constexpr int kWrongUsage = 2;
+
+void logToStderr() {
+  const auto logger = spdlog::stderr_color_mt("parkade");
+  logger->set_pattern("%^%l%$: %v");
+  setLogSink([logger](LogLevel level, std::string_view message) {
+    switch (level) {
+      case LogLevel::kDebug:
+        logger->debug(message);
+        break;
+      case LogLevel::kInfo:
+        logger->info(message);
+        break;
+      case LogLevel::kWarning:
+        logger->warn(message);
+        break;
+      case LogLevel::kError:
+        logger->error(message);
+        break;
+    }
+  });
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Parkade: semantic visual-inertial SLAM for automated valet parking", "parkade"};
+  app.set_version_flag("--version", "parkade " PARKADE_VERSION);
+  app.set_help_flag("-h,--help", "Show this help and exit");
+  app.require_subcommand(1);
+  app.footer("'parkade COMMAND --help' explains a command and shows an example.");
+  int exit_code = 0;
+#ifdef PARKADE_WITH_SIM
+  addSimCommand(app, exit_code);
+#endif
+#ifdef PARKADE_WITH_PIPELINE
+  addRunCommand(app, exit_code);
+#endif
+#ifdef PARKADE_WITH_EVAL
+  addEvalCommand(app, exit_code);
+#endif
+#ifdef PARKADE_WITH_IO
+  addInfoCommand(app, exit_code);
+#endif
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kWrongUsage;
+  }
+  return exit_code;
+}
+
+}  // namespace
+
+int fail(const Error& error) {
+  fmt::print(stderr, "parkade: {}\n", error.message);
+  return 1;
+}
+
+}  // namespace parkade::cli
+
+int main(int argc, char** argv) {
+  try {
+    parkade::cli::logToStderr();
+    return parkade::cli::run(argc, argv);
+  } catch (const std::exception& error) {
+    return parkade::cli::fail({fmt::format("internal error: {}", error.what())});
+  }
+}
