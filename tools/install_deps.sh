@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The Parkade authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Installs the Debian 12 packages that Parkade is built from. Asks apt nothing when all are there;
+# asks the user nothing ever. With --list it only prints the packages.
+set -euo pipefail
+
+packages=(
+  # to build
+  build-essential cmake git ninja-build pkg-config
+  # the program
+  libceres-dev libcli11-dev libcpp-httplib-dev libeigen3-dev libembree-dev libfmt-dev libopencv-dev
+  libspdlog-dev libsqlite3-dev libtbb-dev libyaml-cpp-dev libzstd-dev nlohmann-json3-dev
+  # to test and to measure
+  libbenchmark-dev libgmock-dev libgtest-dev python3 python3-numpy python3-yaml
+)
+# Only CI needs these.
+ci_packages=(clang-format)
+
+if [ "${1:-}" = "--ci" ]; then
+  packages+=("${ci_packages[@]}")
+  shift
+fi
+if [ "${1:-}" = "--list" ]; then
+  printf '%s\n' "${packages[@]}"
+  exit 0
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+  status=$(dpkg-query -W -f='${db:Status-Abbrev}' "$package" 2>/dev/null || true)
+  [[ "$status" == ii* ]] || missing+=("$package")
+done
+if [ ${#missing[@]} -eq 0 ]; then
+  exit 0
+fi
+
+echo "Installing ${#missing[@]} Debian packages: ${missing[*]}"
+sudo=()
+if [ "$(id -u)" -ne 0 ]; then
+  if ! command -v sudo >/dev/null; then
+    echo "These packages are missing, and installing them needs root: apt-get install ${missing[*]}" >&2
+    exit 1
+  fi
+  sudo=(sudo)
+fi
+export DEBIAN_FRONTEND=noninteractive
+"${sudo[@]}" apt-get update -q
+"${sudo[@]}" env DEBIAN_FRONTEND=noninteractive \
+  apt-get install -q -y --no-install-recommends "${missing[@]}"
