@@ -97,6 +97,7 @@ struct Scene {
   std::vector<MovingObject> moving;
   std::vector<Luminaire> luminaires;
   std::shared_ptr<const FloorSurface> floor;
+  int ego_mesh = -1;  ///< mesh of the own car's body in the vehicle frame; -1: none is drawn
   double target_floor_lux = 200.0;  ///< mean over the drivable floor that the bake must meet
   /// Daylight through an opening: direction to the sky's centre and its share of the light.
   struct Daylight {
