@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "parkade/imu/imu_types.hpp"
+
+namespace parkade {
+
+/// Recent IMU readings in the order of time, cut at any instant.
+class ReadingBuffer {
+ public:
+  /// Appends a reading. False, and nothing is kept, where it is not newer than the last one or not
+  /// finite.
+  bool add(const ImuReading& reading);
+
+  /// Readings that cover [begin_ns, end_ns], with the ends interpolated between their neighbours.
+  /// An end before the first or after the last reading holds that one. Empty where no reading is
+  /// known.
+  [[nodiscard]] std::vector<ImuReading> between(TimeNs begin_ns, TimeNs end_ns) const;
+  /// The reading at an instant, interpolated or held.
+  [[nodiscard]] ImuReading at(TimeNs t_ns) const;
+
+  /// Forgets what is not needed to cover instants from t_ns on.
+  void dropBefore(TimeNs t_ns);
+  [[nodiscard]] bool empty() const { return readings_.empty(); }
+  [[nodiscard]] std::size_t size() const { return readings_.size(); }
+  [[nodiscard]] TimeNs firstTime() const { return readings_.front().t_ns; }
+  [[nodiscard]] TimeNs lastTime() const { return readings_.back().t_ns; }
+  [[nodiscard]] const std::deque<ImuReading>& readings() const { return readings_; }
+
+ private:
+  /// Index of the first reading later than t_ns.
+  [[nodiscard]] std::size_t indexAfter(TimeNs t_ns) const;
+  std::deque<ImuReading> readings_;
+};
+
+}  // namespace parkade

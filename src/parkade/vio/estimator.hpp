@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "parkade/camera/rig.hpp"
+#include "parkade/types/landmark.hpp"
+#include "parkade/types/motion_prior.hpp"
+#include "parkade/types/pose_estimate.hpp"
+#include "parkade/types/samples.hpp"
+#include "parkade/types/track.hpp"
+#include "parkade/types/trajectory.hpp"
+#include "parkade/vio/options.hpp"
+#include "parkade/vio/predictor.hpp"
+
+namespace parkade {
+
+/// What the last addTracks() did, for time tables, plots and tests.
+struct VioStatistics {
+  int frames = 0;     ///< in the window
+  int keyframes = 0;  ///< of them
+  int landmarks = 0;  ///< in the solve
+  int observations = 0;
+  int iterations = 0;
+  int rejected_observations = 0;
+  std::vector<int> rejected_cameras;  ///< that contradict the prediction as a whole
+  bool standstill = false;
+};
+
+/// Visual-inertial odometry over any number of cameras: a sliding window of keyframes and recent
+/// frames, optimised at every frame set; what leaves the window stays as a prior. Eats tracks,
+/// never images. See docs/math/{preintegration,residuals,marginalisation,start_up}.md.
+///
+/// The same calls give the same bytes. Not thread-safe; predictor() copies what another thread
+/// needs.
+class VioEstimator {
+ public:
+  VioEstimator(const Rig& rig, const VioOptions& options);
+  ~VioEstimator();
+  VioEstimator(VioEstimator&&) noexcept;
+  VioEstimator& operator=(VioEstimator&&) noexcept;
+
+  /// Readings in the order of time; one that is not newer than the last or not finite is dropped
+  /// with a warning.
+  void addImu(const ImuSample& sample);
+  void addWheel(const WheelSample& sample);
+
+  /// Takes one frame set and gives the pose there. TrackSet::t_ns is on the IMU's clock. Call it
+  /// when all IMU readings up to that instant were added, best also the first one after it: the
+  /// reading there is interpolated, else the last one held. While the health is kInitialising there
+  /// is no pose yet. A set that is not newer than the last is ignored: the last estimate comes
+  /// back.
+  PoseEstimate addTracks(const TrackSet& tracks);
+
+  /// Where the car and the known features will be at t_ns, given the readings added so far;
+  /// previous is the last frame set added.
+  [[nodiscard]] MotionPrior predict(TimeNs t_ns) const;
+  /// A copy of the newest state that predicts on its own, for a front end that runs ahead in
+  /// another thread: give it the later IMU readings.
+  [[nodiscard]] MotionPredictor predictor() const;
+
+  /// Landmarks of the last solve.
+  [[nodiscard]] std::vector<Landmark> landmarks() const;
+
+  /// Every frame set since the start, re-estimated with all that came after it: frames of the
+  /// window as last solved, older ones corrected through the keyframes that left it.
+  [[nodiscard]] Trajectory finalTrajectory() const;
+
+  [[nodiscard]] const VioStatistics& statistics() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace parkade
