@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/bev/stitcher.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "parkade/core/check.hpp"
+
+namespace parkade {
+namespace {
+
+// A smooth ground texture, different everywhere.
+double texture(double x, double y) {
+  return 120.0 + 50.0 * std::sin(1.7 * x) * std::cos(1.3 * y) + 30.0 * std::sin(0.9 * x + 2.1 * y);
+}
+
+// Four wide cameras around a car, looking down at 30 deg.
+Rig testRig() {
+  Rig rig;
+  rig.vehicle = VehicleShape{};
+  const PinholeEquidistant model({.fx = 230.0, .fy = 230.0, .cx = 319.5, .cy = 199.5});
+  const auto add = [&](const char* name, double x, double y, double yaw) {
+    RigCamera camera;
+    camera.name = name;
+    camera.camera = Camera(model, 640, 400);
+    Eigen::Matrix3d optical;  // columns: x right, y down, z forward, in a frame that looks along x
+    optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+    camera.T_vehicle_cam =
+        SE3(SO3::fromYawPitchRoll(yaw, 0.52, 0.0) * SO3(optical), Eigen::Vector3d(x, y, 0.9));
+    rig.cameras.push_back(camera);
+  };
+  add("front", 3.7, 0.0, 0.0);
+  add("left", 2.0, 0.95, M_PI / 2);
+  add("rear", -1.0, 0.0, M_PI);
+  add("right", 2.0, -0.95, -M_PI / 2);
+  return rig;
+}
+
+// What the cameras see of the textured ground when the body stands at an attitude.
+FrameSet renderGround(const Rig& rig, const GroundAttitude& attitude) {
+  const SE3 T_ground_vehicle(SO3::fromYawPitchRoll(0.0, attitude.pitch, attitude.roll),
+                             Eigen::Vector3d(0.0, 0.0, attitude.height));
+  FrameSet frames;
+  for (const RigCamera& camera : rig.cameras) {
+    const SE3 T_ground_cam = T_ground_vehicle * camera.T_vehicle_cam;
+    cv::Mat image = cv::Mat::zeros(camera.camera.height(), camera.camera.width(), CV_8UC1);
+    for (int v = 0; v < image.rows; ++v) {
+      for (int u = 0; u < image.cols; ++u) {
+        Eigen::Vector3d ray;
+        if (!camera.camera.unproject(Eigen::Vector2d(u, v), ray)) continue;
+        ray = T_ground_cam.rotation() * ray;
+        if (ray.z() > -0.01) continue;
+        const Eigen::Vector3d p =
+            T_ground_cam.translation() - T_ground_cam.translation().z() / ray.z() * ray;
+        image.at<std::uint8_t>(v, u) = static_cast<std::uint8_t>(std::lround(texture(p.x(), p.y())));
+      }
+    }
+    frames.images.push_back(image);
+    frames.image_t_ns.push_back(0);
+  }
+  return frames;
+}
+
+// Root mean square difference to the true texture over the valid pixels within a range of the car.
+double rmsError(const BevImage& bev, double range) {
+  double sum = 0.0;
+  int count = 0;
+  for (int v = 0; v < bev.image.rows; ++v) {
+    for (int u = 0; u < bev.image.cols; ++u) {
+      const Eigen::Vector2d p = bev.geometry.toGround(Eigen::Vector2d(u, v));
+      if (bev.valid.at<std::uint8_t>(v, u) == 0 || (p - bev.geometry.center).norm() > range) continue;
+      const double difference = bev.image.at<std::uint8_t>(v, u) - texture(p.x(), p.y());
+      sum += difference * difference;
+      ++count;
+    }
+  }
+  EXPECT_GT(count, 1000);
+  return std::sqrt(sum / count);
+}
+
+double coverage(const BevImage& bev) {
+  return cv::countNonZero(bev.valid) / static_cast<double>(bev.valid.total());
+}
+
+TEST(BevGeometry, PixelsAndGroundAreInverse) {
+  BevGeometry geometry;
+  geometry.center = {1.4, 0.0};
+  const Eigen::Vector2d ahead_left = geometry.toPixel({5.0, 2.0});
+  EXPECT_LT(ahead_left.x(), 191.5);
+  EXPECT_LT(ahead_left.y(), 191.5);
+  EXPECT_LT((geometry.toGround(ahead_left) - Eigen::Vector2d(5.0, 2.0)).norm(), 1e-12);
+}
+
+TEST(BevStitcher, AgreesWithTheTrueGround) {
+  const Rig rig = testRig();
+  BevStitcher stitcher(rig, {});
+  const BevImage bev = stitcher.stitch(renderGround(rig, {}));
+  EXPECT_LT(rmsError(bev, 6.0), 0.8);  // rounding twice and interpolating once
+  EXPECT_GT(coverage(bev), 0.85);
+}
+
+TEST(BevStitcher, CorrectsPitchRollAndHeight) {
+  const Rig rig = testRig();
+  const GroundAttitude attitude{0.5 * M_PI / 180.0, -0.4 * M_PI / 180.0, -0.02};
+  const FrameSet frames = renderGround(rig, attitude);
+  BevStitcher stitcher(rig, {});
+  const double uncorrected = rmsError(stitcher.stitch(frames), 6.0);
+  const double corrected = rmsError(stitcher.stitch(frames, attitude), 6.0);
+  EXPECT_GT(uncorrected, 4.0);
+  EXPECT_LT(corrected, 1.0);
+}
+
+TEST(BevStitcher, OwnCarAndUnseenGroundAreNotValid) {
+  const Rig rig = testRig();
+  BevStitcher stitcher(rig, {});
+  const BevImage bev = stitcher.stitch(renderGround(rig, {}));
+  const Eigen::Vector2d car = bev.geometry.toPixel({1.0, 0.3});
+  EXPECT_EQ(bev.valid.at<std::uint8_t>(static_cast<int>(car.y()), static_cast<int>(car.x())), 0);
+}
+
+TEST(BevStitcher, AMissingCameraLeavesAHoleOnly) {
+  const Rig rig = testRig();
+  BevStitcher stitcher(rig, {});
+  FrameSet frames = renderGround(rig, {});
+  const double all = coverage(stitcher.stitch(frames));
+  frames.images[0] = cv::Mat();
+  const BevImage bev = stitcher.stitch(frames);
+  EXPECT_LT(coverage(bev), all);
+  EXPECT_GT(coverage(bev), 0.5);
+  EXPECT_LT(rmsError(bev, 6.0), 0.8);
+  for (cv::Mat& image : frames.images) image = cv::Mat();
+  EXPECT_EQ(coverage(stitcher.stitch(frames)), 0.0);
+}
+
+TEST(BevStitcher, BalancesBrightness) {
+  const Rig rig = testRig();
+  FrameSet frames = renderGround(rig, {});
+  frames.images[1] *= 0.7;  // the left camera is darker
+  BevStitcher stitcher(rig, {});
+  static_cast<void>(stitcher.stitch(frames));
+  const std::vector<double> gains = stitcher.gains();
+  for (const int other : {0, 2, 3}) EXPECT_NEAR(gains[1] / gains[other], 1.0 / 0.7, 0.03);
+}
+
+TEST(BevStitcher, SameInputSameBytes) {
+  const Rig rig = testRig();
+  const FrameSet frames = renderGround(rig, {});
+  BevStitcher a(rig, {});
+  BevStitcher b(rig, {});
+  const BevImage first = a.stitch(frames);
+  const BevImage second = b.stitch(frames);
+  EXPECT_EQ(cv::norm(first.image, second.image, cv::NORM_INF), 0.0);
+}
+
+TEST(BevStitcher, RefusesImagesOfAnotherSize) {
+  const Rig rig = testRig();
+  BevStitcher stitcher(rig, {});
+  FrameSet frames = renderGround(rig, {});
+  frames.images[2] = cv::Mat::zeros(10, 10, CV_8UC1);
+  EXPECT_THROW(static_cast<void>(stitcher.stitch(frames)), CheckError);
+}
+
+}  // namespace
+}  // namespace parkade
