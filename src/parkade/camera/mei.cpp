@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/camera/mei.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 #include "parkade/core/check.hpp"
@@ -21,9 +23,16 @@ bool lift(double xi, const Eigen::Vector2d& m, Eigen::Vector3d& ray) {
 
 }  // namespace
 
+std::string Mei::Parameters::problem() const {
+  if (!(xi >= 0.0)) return fmt::format("xi = {} must be >= 0", xi);
+  if (!(gamma1 > 0.0 && gamma2 > 0.0)) {
+    return fmt::format("focal lengths {} and {} must be > 0", gamma1, gamma2);
+  }
+  return {};
+}
+
 Mei::Mei(const Parameters& parameters) : p_(parameters) {
-  PARKADE_CHECK(p_.xi >= 0.0, "xi = {}", p_.xi);
-  PARKADE_CHECK(p_.gamma1 > 0.0 && p_.gamma2 > 0.0, "gammas {} {}", p_.gamma1, p_.gamma2);
+  PARKADE_CHECK(p_.problem().empty(), "{}", p_.problem());
   double radius = p_.distortion.oneToOneRadius();
   // Beyond xi = 1 the plane's picture of the sphere is a disc.
   if (p_.xi > 1.0) radius = std::min(radius, 1.0 / std::sqrt(p_.xi * p_.xi - 1.0));

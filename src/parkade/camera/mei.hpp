@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <string>
 
 #include "parkade/camera/radtan.hpp"
 
@@ -27,10 +28,13 @@ class Mei {
     double u0 = 0.0;      ///< px; the centre of the top left pixel is (0, 0)
     double v0 = 0.0;      ///< px
     RadtanDistortion distortion;
+
+    /// Why these values describe no camera; empty where they do.
+    [[nodiscard]] std::string problem() const;
   };
 
   Mei() : Mei(Parameters{}) {}
-  explicit Mei(const Parameters& parameters);
+  explicit Mei(const Parameters& parameters);  ///< without problem(), else it throws
 
   bool project(const Eigen::Vector3d& p_cam, Eigen::Vector2d& pixel,
                Eigen::Matrix<double, 2, 3>* d_px_d_p = nullptr) const {

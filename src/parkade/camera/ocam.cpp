@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/camera/ocam.hpp"
 
+#include <fmt/core.h>
+
 #include <Eigen/LU>
 #include <algorithm>
 
@@ -23,12 +25,35 @@ Ocam::Parameters Ocam::fromToolbox(const std::vector<double>& pol,
 }
 
 Ocam::Polynomial Ocam::toPolynomial(const std::vector<double>& coefficients) {
-  PARKADE_CHECK(coefficients.size() <= kMaxCoefficients, "{} coefficients, at most {}",
-                coefficients.size(), kMaxCoefficients);
   Polynomial polynomial;
-  std::copy(coefficients.begin(), coefficients.end(), polynomial.coefficients.begin());
-  polynomial.size = static_cast<int>(coefficients.size());
+  polynomial.size = static_cast<int>(std::min<std::size_t>(coefficients.size(), kMaxCoefficients));
+  std::copy_n(coefficients.begin(), polynomial.size, polynomial.coefficients.begin());
   return polynomial;
+}
+
+std::string Ocam::Parameters::problem() const {
+  if (world2cam.size() < 2 || world2cam.size() > kMaxCoefficients) {
+    return fmt::format("world2cam has {} coefficients, expected 2 to {}", world2cam.size(),
+                       kMaxCoefficients);
+  }
+  if (cam2world.size() > kMaxCoefficients) {
+    return fmt::format("cam2world has {} coefficients, expected at most {}", cam2world.size(),
+                       kMaxCoefficients);
+  }
+  if (!(affine.determinant() > 0.0)) {
+    return fmt::format("the affine part has determinant {}, expected > 0", affine.determinant());
+  }
+  double slope = 0.0;
+  const double offset = toPolynomial(world2cam)(-0.5 * std::numbers::pi, slope);
+  if (!(std::abs(offset) <= kMaxCentreOffset)) {
+    return fmt::format("world2cam gives {} px on the optical axis, expected 0 to within {} px",
+                       offset, kMaxCentreOffset);
+  }
+  if (!(slope > 2.0 * kMaxCentreOffset / kBlendAngle)) {
+    return fmt::format("world2cam grows by {} px/rad on the optical axis, expected a focal length",
+                       slope);
+  }
+  return {};
 }
 
 Ocam::Ocam(const Parameters& parameters)
@@ -37,16 +62,10 @@ Ocam::Ocam(const Parameters& parameters)
       affine_(parameters.affine),
       affine_inverse_(parameters.affine.inverse()),
       center_(parameters.cx, parameters.cy) {
-  PARKADE_CHECK(affine_.determinant() > 0.0, "the affine matrix has determinant {}",
-                affine_.determinant());
+  PARKADE_CHECK(parameters.problem().empty(), "{}", parameters.problem());
   double slope = 0.0;
   center_offset_ = world2cam_(-0.5 * std::numbers::pi, slope);
-  PARKADE_CHECK(std::abs(center_offset_) <= kMaxCentreOffset,
-                "world2cam gives {} px on the optical axis, where it should give 0",
-                center_offset_);
   radius(0.0, focal_at_axis_);
-  PARKADE_CHECK(focal_at_axis_ > 0.0, "world2cam falls on the optical axis: slope {} px/rad",
-                focal_at_axis_);
   max_angle_ = growingRange(
       [this](double theta) {
         double slope_at = 0.0;

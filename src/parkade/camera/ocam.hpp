@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <vector>
 
 namespace parkade {
@@ -35,11 +36,14 @@ class Ocam {
   static constexpr double kMaxCentreOffset = 1.0;  ///< px
 
   struct Parameters {
-    std::vector<double> world2cam = {0.5 * std::numbers::pi, 1.0};  ///< w_0, w_1, ...; px
-    std::vector<double> cam2world;                                  ///< a_0, a_1, ...; may be empty
+    std::vector<double> world2cam = {50.0 * std::numbers::pi, 100.0};  ///< w_0, w_1, ...; px
+    std::vector<double> cam2world;  ///< a_0, a_1, ...; may be empty
     Eigen::Matrix2d affine = Eigen::Matrix2d::Identity();
     double cx = 0.0;  ///< px; the centre of the top left pixel is (0, 0)
     double cy = 0.0;  ///< px
+
+    /// Why these values describe no camera; empty where they do.
+    [[nodiscard]] std::string problem() const;
   };
 
   /// From the values of the toolbox's calib_results.txt (C and C++ version: indices from 0).
@@ -47,7 +51,7 @@ class Ocam {
                                 double xc, double yc, double c, double d, double e);
 
   Ocam() : Ocam(Parameters{}) {}
-  explicit Ocam(const Parameters& parameters);
+  explicit Ocam(const Parameters& parameters);  ///< without problem(), else it throws
 
   bool project(const Eigen::Vector3d& p_cam, Eigen::Vector2d& pixel,
                Eigen::Matrix<double, 2, 3>* d_px_d_p = nullptr) const {

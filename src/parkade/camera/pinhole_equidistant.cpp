@@ -2,13 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/camera/pinhole_equidistant.hpp"
 
+#include <fmt/core.h>
+
 #include "parkade/camera/solve_monotonic.hpp"
 #include "parkade/core/check.hpp"
 
 namespace parkade {
 
+std::string PinholeEquidistant::Parameters::problem() const {
+  if (!(fx > 0.0 && fy > 0.0)) return fmt::format("focal lengths {} and {} must be > 0", fx, fy);
+  return {};
+}
+
 PinholeEquidistant::PinholeEquidistant(const Parameters& parameters) : p_(parameters) {
-  PARKADE_CHECK(p_.fx > 0.0 && p_.fy > 0.0, "focal lengths {} {}", p_.fx, p_.fy);
+  PARKADE_CHECK(p_.problem().empty(), "{}", p_.problem());
   max_angle_ = growingRange(
       [this](double theta) {
         double slope = 0.0;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <string>
 
 namespace parkade {
 
@@ -27,10 +28,13 @@ class PinholeEquidistant {
     double k2 = 0.0;
     double k3 = 0.0;
     double k4 = 0.0;
+
+    /// Why these values describe no camera; empty where they do.
+    [[nodiscard]] std::string problem() const;
   };
 
   PinholeEquidistant() : PinholeEquidistant(Parameters{}) {}
-  explicit PinholeEquidistant(const Parameters& parameters);
+  explicit PinholeEquidistant(const Parameters& parameters);  ///< without problem(), else it throws
 
   bool project(const Eigen::Vector3d& p_cam, Eigen::Vector2d& pixel,
                Eigen::Matrix<double, 2, 3>* d_px_d_p = nullptr) const {

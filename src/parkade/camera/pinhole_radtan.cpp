@@ -2,12 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/camera/pinhole_radtan.hpp"
 
+#include <fmt/core.h>
+
 #include "parkade/core/check.hpp"
 
 namespace parkade {
 
+std::string PinholeRadtan::Parameters::problem() const {
+  if (!(fx > 0.0 && fy > 0.0)) return fmt::format("focal lengths {} and {} must be > 0", fx, fy);
+  return {};
+}
+
 PinholeRadtan::PinholeRadtan(const Parameters& parameters) : p_(parameters) {
-  PARKADE_CHECK(p_.fx > 0.0 && p_.fy > 0.0, "focal lengths {} {}", p_.fx, p_.fy);
+  PARKADE_CHECK(p_.problem().empty(), "{}", p_.problem());
   const double radius = p_.distortion.oneToOneRadius();
   max_radius_squared_ = radius * radius;
 }

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <string>
 
 #include "parkade/camera/radtan.hpp"
 
@@ -24,10 +25,13 @@ class PinholeRadtan {
     double cx = 0.0;  ///< px; the centre of the top left pixel is (0, 0)
     double cy = 0.0;  ///< px
     RadtanDistortion distortion;
+
+    /// Why these values describe no camera; empty where they do.
+    [[nodiscard]] std::string problem() const;
   };
 
   PinholeRadtan() : PinholeRadtan(Parameters{}) {}
-  explicit PinholeRadtan(const Parameters& parameters);
+  explicit PinholeRadtan(const Parameters& parameters);  ///< without problem(), else it throws
 
   bool project(const Eigen::Vector3d& p_cam, Eigen::Vector2d& pixel,
                Eigen::Matrix<double, 2, 3>* d_px_d_p = nullptr) const {

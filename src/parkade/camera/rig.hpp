@@ -60,11 +60,12 @@ struct Rig {
 /// key, an unknown model, a matrix that is no rotation, a number that is not finite.
 Result<Rig> readRig(const std::string& path);
 
-/// Writes a rig that readRig reads back to the same bits.
+/// Writes a rig that readRig reads back: numbers to the same bits, rotations (written as matrices)
+/// to their last digit. Masks below the file's folder are written relative to it.
 Status writeRig(const Rig& rig, const std::string& path);
 
 /// Reads a Kalibr camera chain and, where not empty, a Kalibr IMU file, as Kalibr writes them. The
-/// vehicle frame is then the IMU's.
+/// vehicle frame is then the IMU's; for a chain that was calibrated without an IMU, cam0's.
 Result<Rig> readKalibr(const std::string& camchain_path, const std::string& imu_path);
 
 /// Reads the sensor.yaml files of an EuRoC/ASL folder (mav0/cam*, mav0/imu0). The vehicle frame is
