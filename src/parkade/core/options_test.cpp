@@ -105,6 +105,15 @@ TEST_F(OptionsTest, DescribesEveryField) {
   EXPECT_THAT(text, HasSubstr("[fused|vis]"));
 }
 
+TEST(YamlNode, ReadsAText) {
+  const Result<YamlNode> root = openYamlText("%YAML:1.0\na: 3\n", "preset");
+  ASSERT_TRUE(root.ok());
+  EXPECT_EQ(root->at("a").asInt(), 3);
+  const Result<YamlNode> bad = openYamlText("a: [1, 2", "preset");
+  ASSERT_FALSE(bad.ok());
+  EXPECT_EQ(bad.error().message.rfind("preset:", 0), 0U) << bad.error().message;
+}
+
 TEST(YamlNode, ReadsMatricesAndNamesWhatIsWrong) {
   const std::string path = ::testing::TempDir() + "parkade_yaml_test.yaml";
   std::ofstream(path) << "%YAML:1.0\n---\nflat: [1,0,0,1, 0,1,0,2, 0,0,1,3, 0,0,0,1]\n"

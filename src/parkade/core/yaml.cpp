@@ -151,7 +151,10 @@ Result<YamlNode> openYaml(const std::string& path) {
   if (!stream) return Error{fmt::format("{}: cannot open the file for reading", path)};
   std::stringstream content;
   content << stream.rdbuf();
-  std::string text = content.str();
+  return openYamlText(content.str(), path);
+}
+
+Result<YamlNode> openYamlText(std::string text, const std::string& path) {
   // OpenCV writes a directive that YAML does not know; blank it and keep the line count.
   if (text.rfind("%YAML:", 0) == 0) text.replace(0, text.find('\n'), "#");
   try {

@@ -66,6 +66,8 @@ Result<T> parseYamlFile(const std::string& path, const std::function<T(const Yam
 
 /// The root node itself, or an Error.
 Result<YamlNode> openYaml(const std::string& path);
+/// The same for a text; path is what messages call it.
+Result<YamlNode> openYamlText(std::string text, const std::string& path);
 
 template <class T>
 Result<T> parseYamlFile(const std::string& path, const std::function<T(const YamlNode&)>& reader) {
