@@ -59,6 +59,8 @@ struct Rig {
 /// Reads rig.yaml (docs/formats.md). Fails with file, line, key and value on a missing or unknown
 /// key, an unknown model, a matrix that is no rotation, a number that is not finite.
 Result<Rig> readRig(const std::string& path);
+/// The same for the text of such a file; path is what messages call it.
+Result<Rig> parseRig(const std::string& text, const std::string& path);
 
 /// Writes a rig that readRig reads back: numbers to the same bits, rotations (written as matrices)
 /// to their last digit. Masks below the file's folder are written relative to it.

@@ -148,6 +148,16 @@ Result<Rig> readRig(const std::string& path) {
   return parseYamlFile<Rig>(path, readRigNode);
 }
 
+Result<Rig> parseRig(const std::string& text, const std::string& path) {
+  const Result<YamlNode> root = openYamlText(text, path);
+  if (!root) return root.error();
+  try {
+    return readRigNode(*root);
+  } catch (const YamlError& error) {
+    return Error{error.what()};
+  }
+}
+
 Status writeRig(const Rig& rig, const std::string& path) {
   std::ofstream stream(path, std::ios::binary | std::ios::trunc);
   if (!stream) return Error{fmt::format("{}: cannot open the file for writing", path)};
