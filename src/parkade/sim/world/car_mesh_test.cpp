@@ -65,7 +65,9 @@ TEST(MeshBuilder, SolidsHaveTheirVolumeAndLookOutwards) {
   for (const Triangle& t : ball.mesh().triangles) {
     const auto& v = ball.mesh().vertices;
     const Eigen::Vector3f n = (v[t.v[1]] - v[t.v[0]]).cross(v[t.v[2]] - v[t.v[0]]);
-    if (n.norm() > 1e-6F) EXPECT_GT(n.dot(ball.mesh().normals[t.v[1]]), 0.0F);
+    if (n.norm() > 1e-6F) {
+      EXPECT_GT(n.dot(ball.mesh().normals[t.v[1]]), 0.0F);
+    }
   }
 }
 
