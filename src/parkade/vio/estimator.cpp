@@ -1,0 +1,399 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/vio/estimator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "parkade/core/log.hpp"
+#include "parkade/vio/estimator_impl.hpp"
+
+namespace parkade {
+namespace {
+
+constexpr double kSaneSpeed = 60.0;        // m/s
+constexpr double kSaneBiasGyro = 0.5;      // rad/s
+constexpr double kSaneBiasAccel = 5.0;     // m/s^2
+constexpr int kMinTrackedLandmarks = 10;   // fewer: degraded
+constexpr int kMinDisparityFeatures = 10;  // fewer say nothing about rest
+constexpr double kKeepReadings = 2.0;      // s
+
+Eigen::Vector3d originVelocity(const WindowFrame& frame, const SE3& T_imu_vehicle) {
+  const Eigen::Vector3d lever = T_imu_vehicle.translation();
+  return frame.state.v_odom + frame.state.R_odom_imu * (frame.gyro - frame.bias.gyro).cross(lever);
+}
+
+}  // namespace
+
+VioEstimator::Impl::Impl(const Rig& rig, const VioOptions& options)
+    : options_(options), features_(options) {
+  noise_.gyroscope_noise_density = rig.imu.gyroscope_noise_density;
+  noise_.gyroscope_random_walk = rig.imu.gyroscope_random_walk;
+  noise_.accelerometer_noise_density = rig.imu.accelerometer_noise_density;
+  noise_.accelerometer_random_walk = rig.imu.accelerometer_random_walk;
+  gap_ns_ = fromSeconds(options.max_imu_gap_s);
+  T_vehicle_imu_ = rig.imu.T_vehicle_imu;
+  const SE3 T_imu_vehicle = T_vehicle_imu_.inverse();
+  window_.T_imu_vehicle = T_imu_vehicle;
+  window_.gravity = Eigen::Vector3d(0.0, 0.0, -options.gravity);
+  for (const RigCamera& camera : rig.cameras) {
+    window_.cameras.push_back({camera.camera, T_imu_vehicle * camera.T_vehicle_cam});
+  }
+  if (rig.vehicle) wheel_track_ = rig.vehicle->track;
+}
+
+void VioEstimator::Impl::addImu(const ImuSample& sample) {
+  if (!readings_.add({sample.t_ns, sample.gyro, sample.accel})) {
+    logWarning("IMU reading at {} ns dropped: not newer than the last one, or not finite",
+               sample.t_ns);
+  }
+}
+
+void VioEstimator::Impl::addWheel(const WheelSample& sample) {
+  if (!wheels_.empty() && sample.t_ns <= wheels_.back().t_ns) return;
+  wheels_.push_back(sample);
+  while (wheels_.front().t_ns + kNsPerSecond < sample.t_ns) wheels_.pop_front();
+}
+
+PoseEstimate VioEstimator::Impl::addTracks(const TrackSet& tracks) {
+  if (has_frame && tracks.t_ns <= last_t_ns) {
+    logWarning("frame set at {} ns ignored: not newer than the last one at {} ns", tracks.t_ns,
+               last_t_ns);
+    return last_;
+  }
+  statistics = {};
+  has_frame = true;
+  last_t_ns = tracks.t_ns;
+  if (!initialised_) {
+    last_ = startUp(tracks);
+  } else {
+    addFrame(tracks);
+    if (initialised_) {
+      last_ = estimate();
+      // The pose is out; the window is made ready for the next frame.
+      trimWindow();
+    }
+  }
+  if (!window_.frames.empty()) {
+    const TimeNs keep =
+        std::min(window_.frames.front().t_ns, tracks.t_ns - fromSeconds(kKeepReadings));
+    readings_.dropBefore(keep);
+  }
+  return last_;
+}
+
+void VioEstimator::Impl::setImu(WindowFrame& frame, TimeNs begin_ns, const ImuBias& bias) const {
+  Preintegration sum(noise_, bias);
+  if (readings_.empty()) return;
+  sum.integrate(readings_.between(begin_ns, frame.t_ns), gap_ns_);
+  // Readings that ended long before the frame are a gap as well.
+  frame.imu_tail_held = readings_.lastTime() < frame.t_ns;
+  frame.imu = sum;
+  frame.imu_sqrt_information = sqrtInformation(sum);
+}
+
+void VioEstimator::Impl::addFrame(const TrackSet& tracks) {
+  WindowFrame& previous = window_.frames.back();
+  if (previous.imu && previous.imu_tail_held && window_.frames.size() > 1) {
+    setImu(previous, window_.frames[window_.frames.size() - 2].t_ns, previous.imu->bias());
+  }
+  WindowFrame frame;
+  frame.id = next_id_++;
+  frame.t_ns = tracks.t_ns;
+  setImu(frame, previous.t_ns, previous.bias);
+  frame.bias = previous.bias;
+  frame.state = frame.imu->propagate(previous.state, previous.bias, window_.gravity);
+  frame.gyro = readings_.at(frame.t_ns).gyro;
+
+  // How far the prediction may be off relative to the frame before it.
+  Matrix15d spread = newest_covariance_;
+  const Eigen::Matrix3d R = previous.state.R_odom_imu.matrix();
+  Matrix15d to_local = Matrix15d::Identity();
+  to_local.block<3, 3>(0, 0) = R.transpose();
+  to_local.block<3, 3>(6, 6) = R.transpose();
+  spread.topRows<6>().setZero();
+  spread.leftCols<6>().setZero();
+  spread = to_local * spread * to_local.transpose();
+  const Matrix15d F = frame.imu->transition();
+  spread = F * spread * F.transpose() + frame.imu->covariance();
+  Eigen::Matrix<double, 6, 6> pose_spread = spread.topLeftCorner<6, 6>();
+  pose_spread.topRows<3>() = R * pose_spread.topRows<3>();
+  pose_spread.leftCols<3>() = pose_spread.leftCols<3>() * R.transpose();
+
+  const Observations observations =
+      FeatureManager::observationsOf(window_.cameras, tracks, frame.id);
+  detectStandstill(frame, observations);
+  addBodyVelocity(frame);
+  window_.frames.push_back(frame);
+  features_.add(window_, observations);
+  const GateResult gate = features_.gateNewest(window_, pose_spread);
+  rememberTracks(observations, tracks.t_ns);
+  features_.triangulateNew(window_);
+  optimise(options_.window.max_iterations);
+  statistics.rejected_observations += gate.rejected;
+  statistics.rejected_cameras = gate.cameras;
+  statistics.standstill = still_;
+  updateHealth(tracks, gate);
+}
+
+SolveOptions VioEstimator::Impl::solveOptions(int max_iterations) const {
+  SolveOptions solve;
+  solve.max_iterations = max_iterations;
+  solve.huber = options_.window.huber_px;
+  return solve;
+}
+
+void VioEstimator::Impl::optimise(int max_iterations) {
+  const std::vector<WindowFeature*> selected = features_.select(window_);
+  const SolveSummary summary = solveWindow(window_, selected, solveOptions(max_iterations));
+  if (summary.has_covariance) newest_covariance_ = summary.newest_covariance;
+  int keyframes = 0;
+  for (const WindowFrame& frame : window_.frames) keyframes += frame.keyframe ? 1 : 0;
+  statistics.frames = static_cast<int>(window_.frames.size());
+  statistics.keyframes = keyframes;
+  statistics.landmarks = static_cast<int>(selected.size());
+  statistics.observations = summary.observations;
+  statistics.iterations = summary.iterations;
+  const int newest = window_.frames.back().id;
+  statistics.rejected_observations = features_.rejectOutliers(window_, selected);
+  solved_landmarks_ = 0;
+  for (const auto& [id, feature] : window_.features) {
+    if (feature.selected && feature.has_point && feature.last_seen_id == newest) {
+      ++solved_landmarks_;
+    }
+  }
+}
+
+void VioEstimator::Impl::rememberTracks(const Observations& observations, TimeNs t_ns) {
+  recent_tracks_.push_back({t_ns, observations});
+  const TimeNs span = fromSeconds(options_.standstill.window_s);
+  while (recent_tracks_.size() > 1 && recent_tracks_[1].t_ns + span <= t_ns) {
+    recent_tracks_.pop_front();
+  }
+}
+
+bool VioEstimator::Impl::imagesAtRest(const Observations& observations, bool& known) const {
+  known = false;
+  if (recent_tracks_.empty()) return false;
+  std::unordered_map<std::uint64_t, Eigen::Vector2d> before;
+  const auto key = [](std::uint64_t id, int camera) {
+    return id * 64 + static_cast<std::uint64_t>(camera);
+  };
+  for (const auto& [id, o] : recent_tracks_.front().observations) {
+    before.emplace(key(id, o.camera), o.pixel);
+  }
+  std::vector<double> moved;
+  double sigma = 0.0;
+  for (const auto& [id, o] : observations) {
+    const auto it = before.find(key(id, o.camera));
+    if (it == before.end()) continue;
+    moved.push_back((o.pixel - it->second).norm());
+    sigma += o.sigma_px;
+  }
+  if (static_cast<int>(moved.size()) < kMinDisparityFeatures) return false;
+  known = true;
+  const auto middle = moved.begin() + static_cast<std::ptrdiff_t>(moved.size() / 2);
+  std::nth_element(moved.begin(), middle, moved.end());
+  // The median length of the difference of two noisy pixels of a resting camera.
+  const double noise = 1.665 * sigma / static_cast<double>(moved.size());
+  return *middle < std::hypot(options_.standstill.max_disparity_px, noise);
+}
+
+void VioEstimator::Impl::detectStandstill(WindowFrame& frame, const Observations& observations) {
+  const VioStandstillOptions& options = options_.standstill;
+  const bool was_still = still_;
+  still_ = false;
+  if (options.enable) {
+    const std::vector<ImuReading> recent =
+        readings_.between(frame.t_ns - fromSeconds(options.window_s), frame.t_ns);
+    const StillnessCheck check = checkStillness(recent, noise_, options.noise_tolerance,
+                                                options.gyro_floor, options.accel_floor);
+    const bool covered = readings_.firstTime() <= frame.t_ns - fromSeconds(options.window_s);
+    bool images_known = false;
+    const bool images_still = imagesAtRest(observations, images_known);
+    // Without images even rolling looks like rest: the speed must be known to be small.
+    const double speed = originVelocity(frame, window_.T_imu_vehicle).norm();
+    const bool slow = speed < options.max_speed;
+    still_ = check.quiet && covered && (images_known ? images_still : (slow || was_still));
+  }
+  if (!still_) {
+    still_anchor_id_ = -1;
+    return;
+  }
+  if (still_anchor_id_ < 0 || window_.indexOf(still_anchor_id_) < 0) {
+    still_anchor_id_ = frame.id;
+    frame.keyframe = true;
+  }
+  frame.still_since = still_anchor_id_;
+}
+
+void VioEstimator::Impl::addBodyVelocity(WindowFrame& frame) const {
+  if (options_.use_no_side_slip) frame.body_velocity_sigma.y() = options_.side_slip_sigma;
+  if (options_.use_planar) frame.body_velocity_sigma.z() = options_.planar_sigma;
+  if (!options_.use_wheel || wheels_.empty()) return;
+  // The newest reading at or before the frame, or the first after it.
+  const WheelSample* best = nullptr;
+  for (const WheelSample& sample : wheels_) {
+    if (best == nullptr || std::abs(static_cast<double>(sample.t_ns - frame.t_ns)) <
+                               std::abs(static_cast<double>(best->t_ns - frame.t_ns))) {
+      best = &sample;
+    }
+  }
+  if (std::abs(toSeconds(best->t_ns - frame.t_ns)) > options_.wheel_max_age_s) return;
+  const double left = best->rear_left_mps;
+  const double right = best->rear_right_mps;
+  double speed = 0.0;
+  if (std::isfinite(left) && std::isfinite(right)) {
+    speed = 0.5 * (left + right);
+  } else if (std::isfinite(left) || std::isfinite(right)) {
+    const Eigen::Vector3d rate =
+        T_vehicle_imu_.rotation() * Eigen::Vector3d(frame.gyro - frame.bias.gyro);
+    const double offset = 0.5 * wheel_track_ * rate.z();
+    speed = std::isfinite(left) ? left + offset : right - offset;
+  } else {
+    return;
+  }
+  frame.body_velocity.x() = speed;
+  frame.body_velocity_sigma.x() = options_.wheel_sigma;
+}
+
+void VioEstimator::Impl::updateHealth(const TrackSet& tracks, const GateResult& gate) {
+  const WindowFrame& newest = window_.frames.back();
+  const bool sane = newest.state.p_odom.allFinite() && newest.state.v_odom.allFinite() &&
+                    newest.state.v_odom.norm() < kSaneSpeed &&
+                    newest.bias.gyro.norm() < kSaneBiasGyro &&
+                    newest.bias.accel.norm() < kSaneBiasAccel;
+  if (!sane) {
+    restart("the estimate diverged");
+    return;
+  }
+  if (solved_landmarks_ >= kMinTrackedLandmarks) last_vision_ns_ = newest.t_ns;
+  const double blind = toSeconds(newest.t_ns - last_vision_ns_);
+  const double gap = newest.imu ? newest.imu->gapDuration() : 0.0;
+  health_ = Health::kTracking;
+  reason_.clear();
+  if (blind > options_.max_blind_s && !still_) {
+    health_ = Health::kLost;
+    reason_ = fmt::format("no images for {:.1f} s, the position is dead reckoning only", blind);
+  } else if (solved_landmarks_ < kMinTrackedLandmarks && !still_) {
+    health_ = Health::kDegraded;
+    reason_ = blind > 0.0 ? fmt::format("dead reckoning: {} known features in view for {:.1f} s",
+                                        solved_landmarks_, blind)
+                          : fmt::format("{} known features in view", solved_landmarks_);
+  } else if (gap > 0.0) {
+    health_ = Health::kDegraded;
+    reason_ = fmt::format("no IMU readings for {:.2f} s", gap);
+  } else if (!gate.cameras.empty()) {
+    health_ = Health::kDegraded;
+    reason_ = "moving objects fill the view of camera";
+    for (const int camera : gate.cameras) reason_ += fmt::format(" {}", camera);
+  } else {
+    for (std::size_t c = 0; c < tracks.camera_ok.size(); ++c) {
+      if (tracks.camera_ok[c] != 0) continue;
+      health_ = Health::kDegraded;
+      reason_ += (reason_.empty() ? "no usable image from camera " : " ") + std::to_string(c);
+    }
+  }
+}
+
+PoseEstimate VioEstimator::Impl::estimate() const {
+  const WindowFrame& frame = window_.frames.back();
+  PoseEstimate result;
+  result.t_ns = frame.t_ns;
+  result.T_odom_vehicle = SE3(frame.state.R_odom_imu, frame.state.p_odom) * window_.T_imu_vehicle;
+  result.velocity_odom = originVelocity(frame, window_.T_imu_vehicle);
+  result.bias_gyro = frame.bias.gyro;
+  result.bias_accel = frame.bias.accel;
+  result.health = health_;
+  result.reason = reason_;
+
+  // From (p_imu in odom axes, right rotation of the imu, ...) to the vehicle's tangent.
+  const Eigen::Matrix3d R_odom_imu = frame.state.R_odom_imu.matrix();
+  const Eigen::Matrix3d R_vehicle_imu = T_vehicle_imu_.rotation().matrix();
+  const Eigen::Matrix3d R_vehicle_odom = R_vehicle_imu * R_odom_imu.transpose();
+  const Eigen::Vector3d lever = window_.T_imu_vehicle.translation();
+  Matrix15d J = Matrix15d::Identity();
+  J.block<3, 3>(0, 0) = R_vehicle_odom;
+  J.block<3, 3>(0, 3) = -R_vehicle_imu * hat(lever);
+  J.block<3, 3>(3, 3) = R_vehicle_imu;
+  J.block<3, 3>(6, 3) = -R_odom_imu * hat((frame.gyro - frame.bias.gyro).cross(lever));
+  J.block<3, 3>(6, 9) = R_odom_imu * hat(lever);
+  result.covariance = J * newest_covariance_ * J.transpose();
+  return result;
+}
+
+MotionPredictor VioEstimator::Impl::predictor() const {
+  MotionPredictor predictor;
+  if (!initialised_ || window_.frames.empty()) return predictor;
+  const WindowFrame& newest = window_.frames.back();
+  predictor.valid_ = true;
+  predictor.t_ns_ = newest.t_ns;
+  predictor.state_ = newest.state;
+  predictor.bias_ = newest.bias;
+  predictor.gravity_ = window_.gravity;
+  predictor.T_vehicle_imu_ = T_vehicle_imu_;
+  for (const ImuReading& reading :
+       readings_.between(newest.t_ns, std::max(newest.t_ns, readings_.lastTime()))) {
+    (void)predictor.readings_.add(reading);
+  }
+  for (const auto& [id, feature] : window_.features) {
+    if (!feature.has_point || feature.last_seen_id + 2 < newest.id) continue;
+    if (feature.inverse_distance < 1e-3) continue;
+    predictor.points_odom_.emplace_back(id, window_.pointOf(feature));
+  }
+  return predictor;
+}
+
+std::vector<Landmark> VioEstimator::Impl::landmarks() const {
+  std::vector<Landmark> result;
+  if (!initialised_) return result;
+  for (const auto& [id, feature] : window_.features) {
+    if (!feature.has_point || !feature.selected || feature.inverse_distance < 1e-3) continue;
+    Landmark landmark;
+    landmark.id = id;
+    landmark.p_odom = window_.pointOf(feature);
+    landmark.num_observations = static_cast<int>(feature.observations.size());
+    landmark.covariance = landmarkCovariance(window_, feature);
+    result.push_back(landmark);
+  }
+  return result;
+}
+
+Trajectory VioEstimator::Impl::finalTrajectory() const {
+  return history_.trajectory(window_);
+}
+
+VioEstimator::VioEstimator(const Rig& rig, const VioOptions& options)
+    : impl_(std::make_unique<Impl>(rig, options)) {}
+VioEstimator::~VioEstimator() = default;
+VioEstimator::VioEstimator(VioEstimator&&) noexcept = default;
+VioEstimator& VioEstimator::operator=(VioEstimator&&) noexcept = default;
+
+void VioEstimator::addImu(const ImuSample& sample) {
+  impl_->addImu(sample);
+}
+void VioEstimator::addWheel(const WheelSample& sample) {
+  impl_->addWheel(sample);
+}
+PoseEstimate VioEstimator::addTracks(const TrackSet& tracks) {
+  return impl_->addTracks(tracks);
+}
+MotionPrior VioEstimator::predict(TimeNs t_ns) const {
+  if (!impl_->has_frame || t_ns < impl_->last_t_ns) return {};
+  return predictor().predict(impl_->last_t_ns, t_ns);
+}
+MotionPredictor VioEstimator::predictor() const {
+  return impl_->predictor();
+}
+std::vector<Landmark> VioEstimator::landmarks() const {
+  return impl_->landmarks();
+}
+Trajectory VioEstimator::finalTrajectory() const {
+  return impl_->finalTrajectory();
+}
+const VioStatistics& VioEstimator::statistics() const {
+  return impl_->statistics;
+}
+
+}  // namespace parkade

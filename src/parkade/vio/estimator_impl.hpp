@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "parkade/imu/reading_buffer.hpp"
+#include "parkade/imu/standstill.hpp"
+#include "parkade/vio/estimator.hpp"
+#include "parkade/vio/feature_manager.hpp"
+#include "parkade/vio/history.hpp"
+#include "parkade/vio/start_up.hpp"
+#include "parkade/vio/window.hpp"
+#include "parkade/vio/window_solver.hpp"
+
+namespace parkade {
+
+class VioEstimator::Impl {
+ public:
+  Impl(const Rig& rig, const VioOptions& options);
+
+  void addImu(const ImuSample& sample);
+  void addWheel(const WheelSample& sample);
+  PoseEstimate addTracks(const TrackSet& tracks);
+  MotionPredictor predictor() const;
+  std::vector<Landmark> landmarks() const;
+  Trajectory finalTrajectory() const;
+
+  VioStatistics statistics;
+  TimeNs last_t_ns = 0;
+  bool has_frame = false;
+
+ private:
+  using Observations = std::vector<std::pair<std::uint64_t, WindowObservation>>;
+
+  // Start-up (estimator_start.cpp).
+  PoseEstimate startUp(const TrackSet& tracks);
+  bool startAtRest();
+  bool startInMotion();
+  void enterWindow(const std::vector<NavState>& states, std::size_t first, const ImuBias& bias,
+                   const Vector15d& sigma);
+  void restart(const std::string& reason);
+  /// Moves states of a start about their own origin to where the last run of the window ended.
+  void continueFromLast(std::vector<NavState>& states, Vector15d& sigma) const;
+
+  // Each frame set (estimator.cpp).
+  void addFrame(const TrackSet& tracks);
+  void detectStandstill(WindowFrame& frame, const Observations& observations);
+  [[nodiscard]] bool imagesAtRest(const Observations& observations, bool& known) const;
+  void addBodyVelocity(WindowFrame& frame) const;
+  void optimise(int max_iterations);
+  void updateHealth(const TrackSet& tracks, const GateResult& gate);
+  void rememberTracks(const Observations& observations, TimeNs t_ns);
+
+  // The window's frames (estimator_window.cpp).
+  void trimWindow();
+  [[nodiscard]] bool wantsKeyframe(std::size_t index) const;
+  void removeFrame(std::size_t index);
+  void marginaliseOldestKeyframe();
+  void setImu(WindowFrame& frame, TimeNs begin_ns, const ImuBias& bias) const;
+
+  [[nodiscard]] PoseEstimate estimate() const;
+  [[nodiscard]] SolveOptions solveOptions(int max_iterations) const;
+
+  VioOptions options_;
+  double wheel_track_ = 0.0;
+  ImuNoise noise_;
+  TimeNs gap_ns_ = 0;
+  SE3 T_vehicle_imu_;
+  Window window_;
+  FeatureManager features_;
+  VioHistory history_;
+  ReadingBuffer readings_;
+  std::deque<WheelSample> wheels_;
+
+  bool initialised_ = false;
+  std::vector<StartUpFrame> start_frames_;
+  std::string start_reason_ = "waiting for images and IMU readings";
+  int next_id_ = 0;
+
+  bool still_ = false;
+  int still_anchor_id_ = -1;
+  struct RecentTracks {
+    TimeNs t_ns = 0;
+    Observations observations;
+  };
+  std::deque<RecentTracks> recent_tracks_;
+
+  PoseEstimate last_;
+  Matrix15d newest_covariance_ = Matrix15d::Zero();  ///< window's tangent
+  int solved_landmarks_ = 0;
+  TimeNs last_vision_ns_ = 0;
+  Health health_ = Health::kInitialising;
+  std::string reason_;
+  // Where the last window ended, for a restart.
+  bool has_last_run_ = false;
+  NavState last_run_state_;
+  TimeNs last_run_t_ns_ = 0;
+  Matrix15d last_run_covariance_ = Matrix15d::Zero();
+  std::vector<Landmark> last_landmarks_;
+};
+
+}  // namespace parkade

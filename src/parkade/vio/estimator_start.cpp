@@ -1,0 +1,229 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "parkade/core/log.hpp"
+#include "parkade/vio/estimator_impl.hpp"
+
+namespace parkade {
+namespace {
+
+constexpr double kGaugePosition = 1e-4;  // m: the first pose is where it is by definition
+constexpr double kGaugeHeading = 1e-5;   // rad
+constexpr std::size_t kMinStartFrames = 5;
+constexpr double kMinRestSpan = 0.25;  // s of quiet readings
+constexpr int kStartIterations = 12;
+constexpr double kMaxStartCost = 3.0;    // per observation, half squared sigmas
+constexpr double kMaxSpeedSpread = 0.1;  // of the speed
+
+}  // namespace
+
+PoseEstimate VioEstimator::Impl::startUp(const TrackSet& tracks) {
+  StartUpFrame frame;
+  frame.t_ns = tracks.t_ns;
+  frame.id = next_id_++;
+  frame.observations = FeatureManager::observationsOf(window_.cameras, tracks, frame.id);
+  bool started = false;
+  if (readings_.empty()) {
+    start_reason_ = "no IMU readings yet";
+    rememberTracks(frame.observations, frame.t_ns);
+  } else {
+    bool known = false;
+    const bool images_still = imagesAtRest(frame.observations, known);
+    rememberTracks(frame.observations, frame.t_ns);
+    start_frames_.push_back(std::move(frame));
+    const TimeNs oldest = tracks.t_ns - fromSeconds(options_.start_up.max_span_s + 0.1);
+    while (start_frames_.front().t_ns < std::max(oldest, readings_.firstTime()) &&
+           start_frames_.size() > 1) {
+      start_frames_.erase(start_frames_.begin());
+    }
+    started = (known && images_still && startAtRest()) || startInMotion();
+  }
+  if (started) {
+    initialised_ = true;
+    last_vision_ns_ = tracks.t_ns;
+    health_ = Health::kTracking;
+    reason_.clear();
+    start_frames_.clear();
+    features_.forgive(window_);
+    return estimate();
+  }
+  PoseEstimate result;
+  result.t_ns = tracks.t_ns;
+  result.health = Health::kInitialising;
+  result.reason = start_reason_;
+  return result;
+}
+
+bool VioEstimator::Impl::startAtRest() {
+  if (!options_.standstill.enable) return false;
+  const TimeNs now = start_frames_.back().t_ns;
+  const TimeNs begin =
+      std::max(readings_.firstTime(), now - fromSeconds(options_.standstill.window_s));
+  if (toSeconds(now - begin) < kMinRestSpan) {
+    start_reason_ = "too few IMU readings to tell rest from motion";
+    return false;
+  }
+  const std::vector<ImuReading> recent = readings_.between(begin, now);
+  const StillnessCheck check =
+      checkStillness(recent, noise_, options_.standstill.noise_tolerance,
+                     options_.standstill.gyro_floor, options_.standstill.accel_floor);
+  if (!check.quiet || std::abs(check.mean_accel.norm() - options_.gravity) > 1.0 ||
+      check.mean_gyro.norm() > 4.0 * options_.start_up.bias_gyro_sigma) {
+    return false;
+  }
+  // The accelerometer's bias and the tilt cannot be told apart at rest: the tilt is taken as seen,
+  // and both are left as uncertain as the bias is.
+  ImuBias bias;
+  bias.gyro = check.mean_gyro;
+  const double tilt = options_.start_up.bias_accel_sigma / options_.gravity;
+  Vector15d sigma;
+  sigma << Eigen::Vector3d::Constant(kGaugePosition), tilt, tilt, kGaugeHeading,
+      Eigen::Vector3d::Constant(5e-3), Eigen::Vector3d::Constant(1e-3),
+      Eigen::Vector3d::Constant(options_.start_up.bias_accel_sigma);
+  const double span = std::max(toSeconds(now - begin), 0.1);
+  sigma.segment<3>(9).setConstant(noise_.gyroscope_noise_density / std::sqrt(span) + 1e-4);
+  std::vector<NavState> states{alignAtRest(check.mean_accel, window_.T_imu_vehicle)};
+  continueFromLast(states, sigma);
+  enterWindow(states, start_frames_.size() - 1, bias, sigma);
+  still_ = true;
+  still_anchor_id_ = window_.frames.back().id;
+  window_.frames.back().still_since = still_anchor_id_;
+  window_.frames.back().keyframe = true;
+  optimise(kStartIterations);
+  return true;
+}
+
+bool VioEstimator::Impl::startInMotion() {
+  const double span = toSeconds(start_frames_.back().t_ns - start_frames_.front().t_ns);
+  if (span < options_.start_up.min_span_s || start_frames_.size() < kMinStartFrames) {
+    start_reason_ = fmt::format("gathering images in motion: {:.2f} s", span);
+    return false;
+  }
+  const StartUpAlignment alignment =
+      alignInMotion(window_.cameras, start_frames_, readings_, noise_, options_.gravity,
+                    window_.T_imu_vehicle, options_.start_up.bias_gyro_sigma, gap_ns_);
+  if (!alignment.ok) {
+    start_reason_ = fmt::format("too few features followed: {}", alignment.num_features);
+    return false;
+  }
+  Vector15d sigma = Vector15d::Zero();
+  sigma.head<3>().setConstant(kGaugePosition);
+  sigma(5) = kGaugeHeading;
+  sigma.segment<3>(9).setConstant(options_.start_up.bias_gyro_sigma);
+  sigma.segment<3>(12).setConstant(options_.start_up.bias_accel_sigma);
+  std::vector<NavState> states = alignment.states;
+  continueFromLast(states, sigma);
+  enterWindow(states, 0, alignment.bias, sigma);
+  // The biases' prior is about zero, not about the alignment.
+  window_.start.bias = ImuBias{};
+  features_.triangulateNew(window_);
+  optimise(kStartIterations);
+  features_.forgive(window_);
+  features_.triangulateNew(window_);
+  const std::vector<WindowFeature*> selected = features_.select(window_);
+  const SolveSummary summary = solveWindow(window_, selected, solveOptions(kStartIterations));
+  const double cost = summary.final_cost / std::max(1, summary.observations);
+  newest_covariance_ = summary.newest_covariance;
+  const double speed = window_.frames.back().state.v_odom.norm();
+  const double speed_sigma = std::sqrt(newest_covariance_.block<3, 3>(6, 6).trace());
+  const bool fits = summary.ok && summary.observations > 40 && cost < kMaxStartCost;
+  const bool sharp = speed_sigma < kMaxSpeedSpread * std::max(speed, 0.5);
+  const bool late = span >= options_.start_up.max_span_s;
+  if (fits && (sharp || late)) {
+    statistics.landmarks = static_cast<int>(selected.size());
+    statistics.observations = summary.observations;
+    logInfo("started in motion: {} frames, {} landmarks, speed {:.2f} +- {:.2f} m/s, cost {:.2f}",
+            window_.frames.size(), selected.size(), speed, speed_sigma, cost);
+    return true;
+  }
+  start_reason_ = fits ? fmt::format("speed uncertain: {:.2f} +- {:.2f} m/s", speed, speed_sigma)
+                       : fmt::format("the motion does not explain the images: {:.1f}", cost);
+  window_.frames.clear();
+  window_.features.clear();
+  window_.prior = {};
+  window_.start.frame_id = -1;
+  features_.clear();
+  return false;
+}
+
+void VioEstimator::Impl::enterWindow(const std::vector<NavState>& states, std::size_t first,
+                                     const ImuBias& bias, const Vector15d& sigma) {
+  window_.frames.clear();
+  window_.features.clear();
+  window_.prior = {};
+  features_.clear();
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const StartUpFrame& start = start_frames_[first + i];
+    WindowFrame frame;
+    frame.id = start.id;
+    frame.t_ns = start.t_ns;
+    frame.state = states[i];
+    frame.bias = bias;
+    frame.gyro = readings_.at(frame.t_ns).gyro;
+    if (i > 0) setImu(frame, start_frames_[first + i - 1].t_ns, bias);
+    // Every second frame of the start is a keyframe; the rest leave as recent frames do.
+    frame.keyframe = i % 2 == 0 && i + 1 < states.size();
+    window_.frames.push_back(frame);
+    features_.add(window_, start.observations);
+  }
+  window_.start.frame_id = window_.frames.front().id;
+  window_.start.state = window_.frames.front().state;
+  window_.start.bias = bias;
+  window_.start.sigma = sigma;
+}
+
+void VioEstimator::Impl::continueFromLast(std::vector<NavState>& states, Vector15d& sigma) const {
+  if (!has_last_run_) return;
+  // Heading and position go on from where the last window ended; what happened between is unknown.
+  const SE3 last = SE3(last_run_state_.R_odom_imu, last_run_state_.p_odom) * window_.T_imu_vehicle;
+  const SO3 turn = SO3::fromYawPitchRoll(last.rotation().yaw(), 0.0, 0.0);
+  const double away = std::max(0.0, toSeconds(start_frames_.front().t_ns - last_run_t_ns_));
+  const Eigen::Vector3d offset = last.translation() + away * last_run_state_.v_odom;
+  for (NavState& state : states) {
+    state.R_odom_imu = turn * state.R_odom_imu;
+    state.p_odom = turn * state.p_odom + offset;
+    state.v_odom = turn * state.v_odom;
+  }
+  for (int i = 0; i < 3; ++i) {
+    sigma(i) = std::sqrt(last_run_covariance_(i, i)) +
+               away * (0.5 + 0.5 * last_run_state_.v_odom.norm()) + kGaugePosition;
+  }
+  const Eigen::Matrix3d R = last_run_state_.R_odom_imu.matrix();
+  const Eigen::Matrix3d rotation = R * last_run_covariance_.block<3, 3>(3, 3) * R.transpose();
+  sigma(5) = std::sqrt(rotation(2, 2)) + 0.1 * away + kGaugeHeading;
+}
+
+void VioEstimator::Impl::restart(const std::string& reason) {
+  logWarning("odometry starts again: {}", reason);
+  // The frame that diverged is left out.
+  if (window_.frames.size() > 1) {
+    const WindowFrame& good = window_.frames[window_.frames.size() - 2];
+    if (good.state.p_odom.allFinite() && good.state.v_odom.norm() < 60.0) {
+      last_run_state_ = good.state;
+      last_run_t_ns_ = good.t_ns;
+      last_run_covariance_ =
+          newest_covariance_.allFinite() ? newest_covariance_ : last_run_covariance_;
+      has_last_run_ = true;
+    }
+    window_.frames.pop_back();
+  }
+  history_.freeze(window_);
+  window_.frames.clear();
+  window_.features.clear();
+  window_.prior = {};
+  window_.start.frame_id = -1;
+  features_.clear();
+  recent_tracks_.clear();
+  start_frames_.clear();
+  initialised_ = false;
+  still_ = false;
+  still_anchor_id_ = -1;
+  start_reason_ = "starting again: " + reason;
+  last_.health = Health::kInitialising;
+  last_.reason = start_reason_;
+  last_.t_ns = last_t_ns;
+}
+
+}  // namespace parkade

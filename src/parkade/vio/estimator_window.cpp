@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "parkade/vio/estimator_impl.hpp"
+
+namespace parkade {
+namespace {
+
+constexpr double kRad = std::numbers::pi / 180.0;
+// Longer readings are not summed up again at every frame: the frame between goes into the prior.
+constexpr double kMaxSummed = 1.0;  // s
+
+}  // namespace
+
+// Whether the frame adds to what the keyframes before it see; decided when it leaves the recent
+// frames, with the frame after it known.
+bool VioEstimator::Impl::wantsKeyframe(std::size_t index) const {
+  const WindowFrame& frame = window_.frames[index];
+  std::size_t last = index;
+  while (last > 0 && !window_.frames[last - 1].keyframe) --last;
+  if (last == 0) return true;
+  const WindowFrame& keyframe = window_.frames[last - 1];
+  if (frame.still_since >= 0 && frame.still_since != frame.id) return false;
+
+  const SO3 R_keyframe_frame = keyframe.state.R_odom_imu.inverse() * frame.state.R_odom_imu;
+  int seen = 0;
+  int shared = 0;
+  int continued = 0;
+  std::vector<double> parallax;
+  const int next_id = window_.frames[index + 1].id;
+  for (const auto& [id, feature] : window_.features) {
+    const WindowObservation* here = nullptr;
+    const WindowObservation* there = nullptr;
+    bool next = false;
+    for (const WindowObservation& o : feature.observations) {
+      if (o.frame_id == next_id) next = true;
+      if (o.frame_id == frame.id && here == nullptr) here = &o;
+    }
+    if (here == nullptr) continue;
+    ++seen;
+    if (next) ++continued;
+    for (const WindowObservation& o : feature.observations) {
+      if (o.frame_id == keyframe.id && o.camera == here->camera) there = &o;
+    }
+    if (there == nullptr) continue;
+    ++shared;
+    const SO3& R_imu_cam =
+        window_.cameras[static_cast<std::size_t>(here->camera)].T_imu_cam.rotation();
+    const Eigen::Vector3d ray = R_keyframe_frame * (R_imu_cam * here->ray);
+    parallax.push_back(std::acos(std::clamp(ray.dot(R_imu_cam * there->ray), -1.0, 1.0)));
+  }
+  if (seen == 0) return false;
+  // The last good frame before darkness keeps what it saw.
+  if (continued < 0.4 * seen) return true;
+  if (shared < options_.keyframe.min_overlap * seen) return true;
+  const auto middle = parallax.begin() + static_cast<std::ptrdiff_t>(parallax.size() / 2);
+  std::nth_element(parallax.begin(), middle, parallax.end());
+  if (*middle > options_.keyframe.parallax_deg * kRad) return true;
+  if ((frame.state.p_odom - keyframe.state.p_odom).norm() > options_.keyframe.distance_m) {
+    return true;
+  }
+  if (angleBetween(frame.state.R_odom_imu, keyframe.state.R_odom_imu) >
+      options_.keyframe.rotation_deg * kRad) {
+    return true;
+  }
+  return toSeconds(frame.t_ns - keyframe.t_ns) > options_.keyframe.max_interval_s;
+}
+
+void VioEstimator::Impl::removeFrame(std::size_t index) {
+  WindowFrame& frame = window_.frames[index];
+  const WindowFrame& before = window_.frames[index - 1];
+  const WindowFrame& after = window_.frames[index + 1];
+  const std::vector<int>& prior_ids = window_.prior.frame_ids;
+  const bool in_prior = std::find(prior_ids.begin(), prior_ids.end(), frame.id) != prior_ids.end();
+  const bool too_long = toSeconds(after.t_ns - before.t_ns) > kMaxSummed;
+  if (in_prior || !frame.imu || !after.imu || too_long) {
+    FrameConditional conditional =
+        marginaliseFrame(window_, frame.id, {}, options_.window.huber_px, solveOptions(1).still);
+    history_.addMarginalised(std::move(conditional), window_);
+    return;
+  }
+  history_.addDropped(frame, before);
+  Preintegration sum(noise_, before.bias);
+  sum.integrate(readings_.between(before.t_ns, after.t_ns), gap_ns_);
+  dropFrame(window_, frame.id, sum);
+}
+
+void VioEstimator::Impl::marginaliseOldestKeyframe() {
+  const int id = window_.frames.front().id;
+  const std::size_t recent =
+      std::min(window_.frames.size() - 1, static_cast<std::size_t>(options_.window.recent_frames));
+  const int first_recent = window_.frames[window_.frames.size() - recent].id;
+  // Landmarks that no recent frame sees any more go into the prior with all they know; the others
+  // stay and only lose their oldest view.
+  std::vector<WindowFeature*> gone;
+  for (auto& [feature_id, feature] : window_.features) {
+    if (!feature.selected || !feature.has_point || feature.observations.size() < 2) continue;
+    if (feature.observations.front().frame_id != id || feature.last_seen_id >= first_recent) {
+      continue;
+    }
+    gone.push_back(&feature);
+  }
+  FrameConditional conditional =
+      marginaliseFrame(window_, id, gone, options_.window.huber_px, solveOptions(1).still);
+  history_.addMarginalised(std::move(conditional), window_);
+}
+
+void VioEstimator::Impl::trimWindow() {
+  const auto recent = static_cast<std::size_t>(options_.window.recent_frames);
+  if (window_.frames.size() > recent) {
+    const std::size_t index = window_.frames.size() - 1 - recent;
+    WindowFrame& frame = window_.frames[index];
+    if (!frame.keyframe) {
+      if (wantsKeyframe(index)) {
+        frame.keyframe = true;
+      } else {
+        removeFrame(index);
+      }
+    }
+  }
+  while (static_cast<int>(window_.frames.size()) >
+         options_.window.keyframes + options_.window.recent_frames) {
+    marginaliseOldestKeyframe();
+  }
+}
+
+}  // namespace parkade

@@ -1,0 +1,258 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/vio/feature_manager.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "parkade/vio/reprojection.hpp"
+#include "parkade/vio/window_solver.hpp"
+
+namespace parkade {
+namespace {
+
+constexpr int kMaxFailures = 3;
+constexpr double kLandmarkSigmaPx = 0.7;     // what the landmark's own uncertainty adds, about
+constexpr double kGateSquared = 25.0;        // of one feature: 5 sigma
+constexpr double kGatePx = 4.0;              // and at least this
+constexpr double kCameraGateSquared = 12.0;  // of a camera's median feature: far outside chance
+constexpr double kCameraGatePx = 2.0;
+constexpr int kMinCameraFeatures = 6;
+constexpr int kCellColumns = 4;
+constexpr int kCellRows = 3;
+
+int cellOf(const VioCamera& camera, const WindowObservation& o) {
+  const int column = std::clamp(
+      static_cast<int>(o.pixel.x() * kCellColumns / camera.camera.width()), 0, kCellColumns - 1);
+  const int row = std::clamp(static_cast<int>(o.pixel.y() * kCellRows / camera.camera.height()), 0,
+                             kCellRows - 1);
+  return (o.camera * kCellRows + row) * kCellColumns + column;
+}
+
+struct Innovation {
+  std::uint64_t id;
+  int camera;
+  double squared;  // over its covariance
+  double px;
+};
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::uint64_t, WindowObservation>> FeatureManager::observationsOf(
+    const std::vector<VioCamera>& cameras, const TrackSet& tracks, int frame_id) {
+  std::vector<std::pair<std::uint64_t, WindowObservation>> result;
+  result.reserve(tracks.observations.size());
+  for (const TrackObservation& track : tracks.observations) {
+    if (track.camera < 0 || track.camera >= static_cast<int>(cameras.size())) continue;
+    const auto camera = static_cast<std::size_t>(track.camera);
+    if (camera < tracks.camera_ok.size() && tracks.camera_ok[camera] == 0) continue;
+    WindowObservation o;
+    o.frame_id = frame_id;
+    o.camera = track.camera;
+    o.pixel = track.pixel;
+    o.sigma_px = std::max(track.sigma_px, 0.01);
+    if (!track.pixel.allFinite() || !cameras[camera].camera.unproject(track.pixel, o.ray)) continue;
+    result.emplace_back(track.id, o);
+  }
+  return result;
+}
+
+void FeatureManager::add(
+    Window& window, const std::vector<std::pair<std::uint64_t, WindowObservation>>& observations) {
+  std::set<std::uint64_t> still_banned;
+  for (const auto& [id, observation] : observations) {
+    if (banned_.count(id) != 0) {
+      still_banned.insert(id);
+      continue;
+    }
+    WindowFeature& feature = window.features[id];
+    feature.id = id;
+    feature.observations.push_back(observation);
+    feature.last_seen_id = observation.frame_id;
+  }
+  banned_ = std::move(still_banned);
+}
+
+GateResult FeatureManager::gateNewest(Window& window, const Eigen::Matrix<double, 6, 6>& spread) {
+  GateResult result;
+  const WindowFrame& newest = window.frames.back();
+  const PoseMatrices target(newest.state);
+  std::vector<Innovation> innovations;
+  std::vector<std::vector<double>> squared(window.cameras.size());
+  std::vector<std::vector<double>> px(window.cameras.size());
+  for (const auto& [id, feature] : window.features) {
+    if (!feature.has_point || feature.last_seen_id != newest.id) continue;
+    const WindowFrame* anchor_frame = window.find(feature.anchor_frame_id);
+    if (anchor_frame == nullptr || anchor_frame->id == newest.id) continue;
+    const PoseMatrices anchor(anchor_frame->state);
+    for (const WindowObservation& o : feature.observations) {
+      if (o.frame_id != newest.id) continue;
+      Eigen::Vector2d pixel;
+      ReprojectionJacobians j;
+      const auto camera = static_cast<std::size_t>(o.camera);
+      Innovation innovation{id, o.camera, 1e6, 1e3};
+      if (reproject(window.cameras[static_cast<std::size_t>(feature.anchor_camera)],
+                    window.cameras[camera], anchor, target, anchor, target, feature.direction,
+                    feature.inverse_distance, pixel, &j)) {
+        const Eigen::Vector2d error = pixel - o.pixel;
+        const double noise = o.sigma_px * o.sigma_px + kLandmarkSigmaPx * kLandmarkSigmaPx;
+        const Eigen::Matrix2d S = j.d_px_d_target * spread * j.d_px_d_target.transpose() +
+                                  noise * Eigen::Matrix2d::Identity();
+        innovation.squared = error.dot(S.ldlt().solve(error));
+        innovation.px = error.norm();
+      }
+      innovations.push_back(innovation);
+      squared[camera].push_back(innovation.squared);
+      px[camera].push_back(innovation.px);
+    }
+  }
+
+  std::vector<char> camera_bad(window.cameras.size(), 0);
+  for (std::size_t c = 0; c < window.cameras.size(); ++c) {
+    if (static_cast<int>(squared[c].size()) < kMinCameraFeatures) continue;
+    if (median(squared[c]) > kCameraGateSquared && median(px[c]) > kCameraGatePx) {
+      camera_bad[c] = 1;
+      result.cameras.push_back(static_cast<int>(c));
+    }
+  }
+  const auto erase = [&](WindowFeature& feature, int camera) {
+    std::erase_if(feature.observations, [&](const WindowObservation& o) {
+      return o.frame_id == newest.id && o.camera == camera;
+    });
+  };
+  for (const Innovation& innovation : innovations) {
+    ++result.checked;
+    const bool bad_camera = camera_bad[static_cast<std::size_t>(innovation.camera)] != 0;
+    if (!bad_camera && (innovation.squared < kGateSquared || innovation.px < kGatePx)) continue;
+    ++result.rejected;
+    WindowFeature& feature = window.features.at(innovation.id);
+    erase(feature, innovation.camera);
+    ++feature.failures;
+  }
+  if (!result.cameras.empty()) {
+    // New features of such a camera would be placed by a motion that is not the car's.
+    for (auto& [id, feature] : window.features) {
+      for (const int camera : result.cameras) erase(feature, camera);
+    }
+  }
+  for (auto it = window.features.begin(); it != window.features.end();) {
+    WindowFeature& feature = it->second;
+    if (feature.failures >= kMaxFailures || feature.observations.empty()) {
+      if (feature.failures >= kMaxFailures) banned_.insert(feature.id);
+      it = window.features.erase(it);
+    } else {
+      ++it;
+    }
+  }
+  return result;
+}
+
+void FeatureManager::triangulateNew(Window& window) {
+  TriangulationLimits limits;
+  const int newest = window.frames.back().id;
+  for (auto it = window.features.begin(); it != window.features.end();) {
+    WindowFeature& feature = it->second;
+    if (!feature.has_point && feature.last_seen_id == newest && feature.observations.size() >= 2) {
+      (void)triangulate(window, feature, limits);
+      if (feature.failures >= kMaxFailures) {
+        banned_.insert(feature.id);
+        it = window.features.erase(it);
+        continue;
+      }
+    }
+    ++it;
+  }
+}
+
+std::vector<WindowFeature*> FeatureManager::select(Window& window) {
+  std::vector<WindowFeature*> chosen;
+  std::vector<WindowFeature*> candidates;
+  std::vector<int> cells(window.cameras.size() * kCellColumns * kCellRows, 0);
+  const auto cell = [&](const WindowFeature& feature) -> int& {
+    const WindowObservation& o = feature.observations.back();
+    return cells[static_cast<std::size_t>(
+        cellOf(window.cameras[static_cast<std::size_t>(o.camera)], o))];
+  };
+  const int newest = window.frames.back().id;
+  for (auto& [id, feature] : window.features) {
+    if (!feature.has_point || feature.observations.size() < 2) {
+      feature.selected = false;
+    } else if (feature.selected) {
+      chosen.push_back(&feature);
+      if (feature.last_seen_id == newest) ++cell(feature);
+    } else if (feature.last_seen_id == newest) {
+      candidates.push_back(&feature);
+    }
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const WindowFeature* a, const WindowFeature* b) {
+                     return a->observations.size() > b->observations.size();
+                   });
+  const auto budget = static_cast<std::size_t>(options_.window.max_landmarks);
+  for (int level = 1; chosen.size() < budget && !candidates.empty(); ++level) {
+    std::vector<WindowFeature*> later;
+    for (WindowFeature* feature : candidates) {
+      int& filled = cell(*feature);
+      if (chosen.size() >= budget || filled >= level) {
+        later.push_back(feature);
+        continue;
+      }
+      ++filled;
+      feature->selected = true;
+      chosen.push_back(feature);
+    }
+    candidates = std::move(later);
+  }
+  return chosen;
+}
+
+int FeatureManager::rejectOutliers(Window& window, const std::vector<WindowFeature*>& features) {
+  int rejected = 0;
+  for (WindowFeature* feature : features) {
+    const std::size_t before = feature->observations.size();
+    bool anchor_lost = false;
+    std::erase_if(feature->observations, [&](const WindowObservation& o) {
+      if (whitenedError(window, *feature, o) < options_.window.outlier_sigma) return false;
+      if (o.frame_id == feature->anchor_frame_id && o.camera == feature->anchor_camera) {
+        anchor_lost = true;
+      }
+      return true;
+    });
+    const std::size_t removed = before - feature->observations.size();
+    if (removed == 0) continue;
+    rejected += static_cast<int>(removed);
+    ++feature->failures;
+    if (feature->observations.size() < 2 || feature->failures >= kMaxFailures) {
+      feature->has_point = false;
+      feature->selected = false;
+      feature->observations.clear();
+    } else if (anchor_lost && !moveAnchor(window, *feature, feature->observations.front())) {
+      feature->has_point = false;
+      feature->selected = false;
+    }
+  }
+  for (auto it = window.features.begin(); it != window.features.end();) {
+    if (it->second.observations.empty()) {
+      if (it->second.failures >= kMaxFailures) banned_.insert(it->first);
+      it = window.features.erase(it);
+    } else {
+      ++it;
+    }
+  }
+  return rejected;
+}
+
+void FeatureManager::forgive(Window& window) {
+  for (auto& [id, feature] : window.features) feature.failures = 0;
+  banned_.clear();
+}
+
+}  // namespace parkade

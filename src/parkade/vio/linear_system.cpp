@@ -1,0 +1,267 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/vio/linear_system.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "parkade/geometry/robust.hpp"
+
+namespace parkade {
+namespace {
+
+constexpr int kState = 15;
+// Information that keeps landmarks without parallax invertible: 10 per metre, 1 sigma.
+constexpr double kInverseDistanceInformation = 1e-2;
+constexpr double kMinInverseDistance = 1e-4;
+constexpr double kMaxInverseDistance = 20.0;
+// Whitened error that stands for an observation that cannot be projected at all.
+constexpr double kInvisibleCost = 50.0;
+
+}  // namespace
+
+FactorSelection FactorSelection::all(const Window& window) {
+  FactorSelection s = none(window);
+  s.prior = true;
+  std::fill(s.imu.begin(), s.imu.end(), 1);
+  std::fill(s.still.begin(), s.still.end(), 1);
+  std::fill(s.unary.begin(), s.unary.end(), 1);
+  return s;
+}
+
+FactorSelection FactorSelection::none(const Window& window) {
+  FactorSelection s;
+  s.prior = false;
+  s.imu.assign(window.frames.size(), 0);
+  s.still.assign(window.frames.size(), 0);
+  s.unary.assign(window.frames.size(), 0);
+  return s;
+}
+
+double LinearSystem::linearise(const Window& window, const FactorSelection& selection) {
+  const int count = static_cast<int>(window.frames.size());
+  H_.setZero(kState * count, kState * count);
+  b_.setZero(kState * count);
+  cost_ = 0.0;
+  num_observations_ = 0;
+  landmarks_.clear();
+  couplings_.clear();
+  poses_.resize(window.frames.size());
+  poses_lin_.resize(window.frames.size());
+  slot_.assign(window.frames.size(), -1);
+  for (std::size_t i = 0; i < window.frames.size(); ++i) {
+    poses_[i] = PoseMatrices(window.frames[i].state);
+    poses_lin_[i] = PoseMatrices(window.frames[i].jacobianState());
+  }
+  if (selection.prior) addPrior(window);
+  addImu(window, selection);
+  addMotion(window, selection);
+  for (WindowFeature* feature : selection.features) addFeature(window, *feature);
+  return cost_;
+}
+
+void LinearSystem::addPrior(const Window& window) {
+  const WindowPrior& prior = window.prior;
+  const int count = static_cast<int>(prior.frame_ids.size());
+  if (count == 0) return;
+  Eigen::VectorXd delta(kState * count);
+  std::vector<int> index(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    index[static_cast<std::size_t>(i)] =
+        window.indexOf(prior.frame_ids[static_cast<std::size_t>(i)]);
+    delta.segment<kState>(kState * i) =
+        window.frames[static_cast<std::size_t>(index[static_cast<std::size_t>(i)])].delta;
+  }
+  const Eigen::VectorXd H_delta = prior.H * delta;
+  const Eigen::VectorXd gradient = prior.b + H_delta;
+  cost_ += 0.5 * delta.dot(H_delta) + prior.b.dot(delta);
+  for (int i = 0; i < count; ++i) {
+    const int row = kState * index[static_cast<std::size_t>(i)];
+    b_.segment<kState>(row) += gradient.segment<kState>(kState * i);
+    for (int j = 0; j <= i; ++j) {
+      const int column = kState * index[static_cast<std::size_t>(j)];
+      // Frame ids rise with the index, so this stays in the lower triangle.
+      H_.block<kState, kState>(row, column) +=
+          prior.H.block<kState, kState>(kState * i, kState * j);
+    }
+  }
+}
+
+void LinearSystem::addPair(int i, int j, const Matrix15d& hii, const Matrix15d& hji,
+                           const Matrix15d& hjj) {
+  H_.block<kState, kState>(kState * i, kState * i) += hii;
+  H_.block<kState, kState>(kState * j, kState * i) += hji;
+  H_.block<kState, kState>(kState * j, kState * j) += hjj;
+}
+
+void LinearSystem::addImu(const Window& window, const FactorSelection& selection) {
+  for (std::size_t k = 1; k < window.frames.size(); ++k) {
+    if (selection.imu[k] == 0 || !window.frames[k].imu) continue;
+    const int i = static_cast<int>(k) - 1;
+    const int j = static_cast<int>(k);
+    Matrix15d by_i;
+    Matrix15d by_j;
+    const Vector15d r =
+        imuResidual(window.frames[k - 1], window.frames[k], window.gravity, &by_i, &by_j);
+    cost_ += 0.5 * r.squaredNorm();
+    b_.segment<kState>(kState * i).noalias() += by_i.transpose() * r;
+    b_.segment<kState>(kState * j).noalias() += by_j.transpose() * r;
+    addPair(i, j, by_i.transpose() * by_i, by_j.transpose() * by_i, by_j.transpose() * by_j);
+  }
+}
+
+void LinearSystem::addMotion(const Window& window, const FactorSelection& selection) {
+  for (std::size_t k = 0; k < window.frames.size(); ++k) {
+    const WindowFrame& frame = window.frames[k];
+    const int j = static_cast<int>(k);
+    if (selection.unary[k] != 0 && frame.id == window.start.frame_id) {
+      Matrix15d by_frame;
+      const Vector15d r = startResidual(frame, window.start, &by_frame);
+      cost_ += 0.5 * r.squaredNorm();
+      b_.segment<kState>(kState * j).noalias() += by_frame.transpose() * r;
+      H_.block<kState, kState>(kState * j, kState * j) += by_frame.transpose() * by_frame;
+    }
+    if (selection.unary[k] != 0 && frame.body_velocity_sigma.maxCoeff() > 0.0) {
+      Matrix3x15d by_frame;
+      const Eigen::Vector3d r = bodyVelocityResidual(frame, window.T_imu_vehicle, &by_frame);
+      // Wheels slip and cars cross bumps: bounded influence here as well.
+      const RobustValue term = huber(r.squaredNorm(), huber_);
+      cost_ += 0.5 * term.rho;
+      b_.segment<kState>(kState * j).noalias() += term.weight * by_frame.transpose() * r;
+      H_.block<kState, kState>(kState * j, kState * j) +=
+          term.weight * by_frame.transpose() * by_frame;
+    }
+    if (selection.still[k] != 0 && frame.still_since >= 0 && frame.still_since < frame.id) {
+      const int i = window.indexOf(frame.still_since);
+      if (i < 0) continue;
+      Matrix9x15d by_rest;
+      Matrix9x15d by_now;
+      const Vector9d r = stillResidual(window.frames[static_cast<std::size_t>(i)], frame, still_,
+                                       &by_rest, &by_now);
+      cost_ += 0.5 * r.squaredNorm();
+      b_.segment<kState>(kState * i).noalias() += by_rest.transpose() * r;
+      b_.segment<kState>(kState * j).noalias() += by_now.transpose() * r;
+      addPair(i, j, by_rest.transpose() * by_rest, by_now.transpose() * by_rest,
+              by_now.transpose() * by_now);
+    }
+  }
+}
+
+void LinearSystem::addFeature(const Window& window, WindowFeature& feature) {
+  const int a = window.indexOf(feature.anchor_frame_id);
+  if (a < 0) return;
+  const auto anchor = static_cast<std::size_t>(a);
+  const VioCamera& anchor_camera = window.cameras[static_cast<std::size_t>(feature.anchor_camera)];
+  LandmarkBlock landmark;
+  landmark.feature = &feature;
+  landmark.first = static_cast<int>(couplings_.size());
+  landmark.V(2, 2) = kInverseDistanceInformation;
+
+  const auto coupling = [&](int frame) -> Matrix63d& {
+    int& slot = slot_[static_cast<std::size_t>(frame)];
+    if (slot < 0) {
+      slot = static_cast<int>(couplings_.size());
+      couplings_.push_back({frame, Matrix63d::Zero()});
+    }
+    return couplings_[static_cast<std::size_t>(slot)].W;
+  };
+
+  int last_frame_id = -1;
+  int t = -1;
+  for (const WindowObservation& observation : feature.observations) {
+    if (observation.frame_id != last_frame_id) {
+      last_frame_id = observation.frame_id;
+      t = window.indexOf(last_frame_id);
+    }
+    if (t < 0) continue;
+    const auto target = static_cast<std::size_t>(t);
+    Eigen::Vector2d pixel;
+    ReprojectionJacobians j;
+    if (!reproject(anchor_camera, window.cameras[static_cast<std::size_t>(observation.camera)],
+                   poses_[anchor], poses_[target], poses_lin_[anchor], poses_lin_[target],
+                   feature.direction, feature.inverse_distance, pixel, &j)) {
+      cost_ += kInvisibleCost;
+      continue;
+    }
+    ++num_observations_;
+    const double weight = 1.0 / observation.sigma_px;
+    Eigen::Vector2d r = weight * (pixel - observation.pixel);
+    const RobustValue term = huber(r.squaredNorm(), huber_);
+    cost_ += 0.5 * term.rho;
+    const double root = std::sqrt(term.weight);
+    r *= root;
+    j.d_px_d_landmark *= weight * root;
+    landmark.V.noalias() += j.d_px_d_landmark.transpose() * j.d_px_d_landmark;
+    landmark.b.noalias() += j.d_px_d_landmark.transpose() * r;
+    if (t == a) continue;  // within one frame set only the landmark moves
+    j.d_px_d_anchor *= weight * root;
+    j.d_px_d_target *= weight * root;
+    coupling(a).noalias() += j.d_px_d_anchor.transpose() * j.d_px_d_landmark;
+    coupling(t).noalias() += j.d_px_d_target.transpose() * j.d_px_d_landmark;
+    b_.segment<6>(kState * a).noalias() += j.d_px_d_anchor.transpose() * r;
+    b_.segment<6>(kState * t).noalias() += j.d_px_d_target.transpose() * r;
+    H_.block<6, 6>(kState * a, kState * a).noalias() +=
+        j.d_px_d_anchor.transpose() * j.d_px_d_anchor;
+    H_.block<6, 6>(kState * t, kState * t).noalias() +=
+        j.d_px_d_target.transpose() * j.d_px_d_target;
+    if (t > a) {
+      H_.block<6, 6>(kState * t, kState * a).noalias() +=
+          j.d_px_d_target.transpose() * j.d_px_d_anchor;
+    } else {
+      H_.block<6, 6>(kState * a, kState * t).noalias() +=
+          j.d_px_d_anchor.transpose() * j.d_px_d_target;
+    }
+  }
+  landmark.count = static_cast<int>(couplings_.size()) - landmark.first;
+  for (int k = landmark.first; k < landmark.first + landmark.count; ++k) {
+    slot_[static_cast<std::size_t>(couplings_[static_cast<std::size_t>(k)].frame)] = -1;
+  }
+  landmarks_.push_back(landmark);
+}
+
+void LinearSystem::reduce(double damping) {
+  reduced_H_ = H_;
+  reduced_b_ = b_;
+  reduced_H_.diagonal() *= 1.0 + damping;
+  for (LandmarkBlock& landmark : landmarks_) {
+    Eigen::Matrix3d V = landmark.V;
+    V.diagonal() *= 1.0 + damping;
+    landmark.V_inverse = V.inverse();
+    const Eigen::Vector3d V_b = landmark.V_inverse * landmark.b;
+    const auto first = static_cast<std::size_t>(landmark.first);
+    const auto last = first + static_cast<std::size_t>(landmark.count);
+    for (std::size_t m = first; m < last; ++m) {
+      const CouplingBlock& row = couplings_[m];
+      const Matrix63d Y = row.W * landmark.V_inverse;
+      reduced_b_.segment<6>(kState * row.frame).noalias() -= row.W * V_b;
+      for (std::size_t n = first; n < last; ++n) {
+        const CouplingBlock& column = couplings_[n];
+        if (column.frame > row.frame) continue;
+        reduced_H_.block<6, 6>(kState * row.frame, kState * column.frame).noalias() -=
+            Y * column.W.transpose();
+      }
+    }
+  }
+}
+
+void LinearSystem::applyToLandmarks(const Eigen::VectorXd& frame_step, double& gradient_dot_step) {
+  for (LandmarkBlock& landmark : landmarks_) {
+    Eigen::Vector3d right = landmark.b;
+    const auto first = static_cast<std::size_t>(landmark.first);
+    const auto last = first + static_cast<std::size_t>(landmark.count);
+    for (std::size_t k = first; k < last; ++k) {
+      right.noalias() +=
+          couplings_[k].W.transpose() * frame_step.segment<6>(kState * couplings_[k].frame);
+    }
+    const Eigen::Vector3d step = -(landmark.V_inverse * right);
+    gradient_dot_step += landmark.b.dot(step);
+    WindowFeature& feature = *landmark.feature;
+    feature.direction =
+        (feature.direction + tangentBasis(feature.direction) * step.head<2>()).normalized();
+    feature.inverse_distance =
+        std::clamp(feature.inverse_distance + step.z(), kMinInverseDistance, kMaxInverseDistance);
+  }
+}
+
+}  // namespace parkade

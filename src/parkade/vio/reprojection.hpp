@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include "parkade/vio/window.hpp"
+
+namespace parkade {
+
+/// A pose as matrices, ready for many products.
+struct PoseMatrices {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();
+  PoseMatrices() = default;
+  explicit PoseMatrices(const NavState& state) : R(state.R_odom_imu.matrix()), p(state.p_odom) {}
+  explicit PoseMatrices(const SE3& T) : R(T.rotation().matrix()), p(T.translation()) {}
+};
+
+/// Position and rotation of the imu frames and the landmark's three coordinates.
+struct ReprojectionJacobians {
+  Eigen::Matrix<double, 2, 6> d_px_d_anchor;
+  Eigen::Matrix<double, 2, 6> d_px_d_target;
+  Eigen::Matrix<double, 2, 3> d_px_d_landmark;
+};
+
+/// Where a landmark, given by direction and inverse distance in its anchor camera, appears in a
+/// target camera; docs/math/residuals.md, eq. (3). False where the camera cannot see it.
+///
+/// The Jacobians of the motion are taken at the poses *_lin, those of the projection at the present
+/// point: a change of all poses by one motion of the odom frame then leaves them without effect at
+/// any state (first-estimate Jacobians; docs/math/marginalisation.md).
+bool reproject(const VioCamera& anchor_camera, const VioCamera& target_camera,
+               const PoseMatrices& anchor, const PoseMatrices& target,
+               const PoseMatrices& anchor_lin, const PoseMatrices& target_lin,
+               const Eigen::Vector3d& direction, double inverse_distance, Eigen::Vector2d& pixel,
+               ReprojectionJacobians* jacobians = nullptr);
+
+}  // namespace parkade

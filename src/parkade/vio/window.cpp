@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/vio/window.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "parkade/core/check.hpp"
+
+namespace parkade {
+namespace {
+
+constexpr double kMinInverseDistance = 1e-4;
+
+void add(const Vector15d& step, NavState& state, ImuBias& bias) {
+  state.p_odom += step.segment<3>(Preintegration::kPosition);
+  state.R_odom_imu = state.R_odom_imu * SO3::exp(step.segment<3>(Preintegration::kRotation));
+  state.v_odom += step.segment<3>(Preintegration::kVelocity);
+  bias.gyro += step.segment<3>(Preintegration::kBiasGyro);
+  bias.accel += step.segment<3>(Preintegration::kBiasAccel);
+}
+
+}  // namespace
+
+void WindowFrame::apply(const Vector15d& step) {
+  if (linearised) {
+    // Steps add up in the tangent space of the one point that all Jacobians are taken at.
+    delta += step;
+    state = lin_state;
+    bias = lin_bias;
+    add(delta, state, bias);
+  } else {
+    add(step, state, bias);
+  }
+}
+
+void WindowFrame::fixLinearisation() {
+  if (linearised) return;
+  linearised = true;
+  lin_state = state;
+  lin_bias = bias;
+  delta.setZero();
+}
+
+int Window::indexOf(int frame_id) const {
+  const auto it = std::lower_bound(frames.begin(), frames.end(), frame_id,
+                                   [](const WindowFrame& frame, int id) { return frame.id < id; });
+  if (it == frames.end() || it->id != frame_id) return -1;
+  return static_cast<int>(it - frames.begin());
+}
+
+WindowFrame* Window::find(int frame_id) {
+  const int index = indexOf(frame_id);
+  return index < 0 ? nullptr : &frames[static_cast<std::size_t>(index)];
+}
+
+const WindowFrame* Window::find(int frame_id) const {
+  const int index = indexOf(frame_id);
+  return index < 0 ? nullptr : &frames[static_cast<std::size_t>(index)];
+}
+
+Eigen::Vector3d Window::pointOf(const WindowFeature& feature) const {
+  const WindowFrame* anchor = find(feature.anchor_frame_id);
+  PARKADE_CHECK(anchor != nullptr, "feature {} has no anchor frame {}", feature.id,
+                feature.anchor_frame_id);
+  const Eigen::Vector3d p_imu = cameras[static_cast<std::size_t>(feature.anchor_camera)].T_imu_cam *
+                                Eigen::Vector3d(feature.direction / feature.inverse_distance);
+  return anchor->state.R_odom_imu * p_imu + anchor->state.p_odom;
+}
+
+Eigen::Matrix<double, 3, 2> tangentBasis(const Eigen::Vector3d& direction) {
+  // Duff et al., "Building an Orthonormal Basis, Revisited", 2017.
+  const double sign = std::copysign(1.0, direction.z());
+  const double a = -1.0 / (sign + direction.z());
+  const double b = direction.x() * direction.y() * a;
+  Eigen::Matrix<double, 3, 2> basis;
+  basis.col(0) << 1.0 + sign * direction.x() * direction.x() * a, sign * b, -sign * direction.x();
+  basis.col(1) << b, sign + direction.y() * direction.y() * a, -direction.y();
+  return basis;
+}
+
+bool moveAnchor(const Window& window, WindowFeature& feature, const WindowObservation& to) {
+  const WindowFrame* from_frame = window.find(feature.anchor_frame_id);
+  const WindowFrame* to_frame = window.find(to.frame_id);
+  PARKADE_CHECK(from_frame != nullptr && to_frame != nullptr, "anchor {} to {}",
+                feature.anchor_frame_id, to.frame_id);
+  const SE3& T_imu_from = window.cameras[static_cast<std::size_t>(feature.anchor_camera)].T_imu_cam;
+  const SE3& T_imu_to = window.cameras[static_cast<std::size_t>(to.camera)].T_imu_cam;
+  const SE3 T_to_from =
+      (SE3(to_frame->state.R_odom_imu, to_frame->state.p_odom) * T_imu_to).inverse() *
+      SE3(from_frame->state.R_odom_imu, from_frame->state.p_odom) * T_imu_from;
+  const Eigen::Vector3d scaled =
+      T_to_from.rotation() * feature.direction + feature.inverse_distance * T_to_from.translation();
+  const double length = scaled.norm();
+  if (length < 1e-3) return false;
+  feature.direction = scaled / length;
+  feature.inverse_distance = std::max(feature.inverse_distance / length, kMinInverseDistance);
+  feature.anchor_frame_id = to.frame_id;
+  feature.anchor_camera = to.camera;
+  return true;
+}
+
+Matrix15d sqrtInformation(const Preintegration& imu) {
+  Matrix15d covariance = imu.covariance();
+  covariance.diagonal().segment<3>(Preintegration::kPosition).array() += 1e-12;
+  covariance.diagonal().segment<3>(Preintegration::kRotation).array() += 1e-14;
+  covariance.diagonal().segment<3>(Preintegration::kVelocity).array() += 1e-12;
+  covariance.diagonal().segment<3>(Preintegration::kBiasGyro).array() += 1e-16;
+  covariance.diagonal().segment<3>(Preintegration::kBiasAccel).array() += 1e-14;
+  const Eigen::LLT<Matrix15d> llt(covariance);
+  PARKADE_CHECK(llt.info() == Eigen::Success, "covariance of {} s of IMU readings is not positive",
+                imu.duration());
+  return llt.matrixL().solve(Matrix15d::Identity());
+}
+
+}  // namespace parkade

@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "parkade/camera/rig.hpp"
+#include "parkade/geometry/se3.hpp"
+#include "parkade/imu/preintegration.hpp"
+
+namespace parkade {
+
+/// A camera as the estimator needs it.
+struct VioCamera {
+  Camera camera;
+  SE3 T_imu_cam;
+};
+
+/// One frame set in the window. Its tangent is that of Preintegration: position (odom axes),
+/// rotation (right perturbation), velocity, gyro bias, accelerometer bias.
+struct WindowFrame {
+  int id = 0;  ///< counts frame sets
+  TimeNs t_ns = 0;
+  bool keyframe = false;
+
+  NavState state;
+  ImuBias bias;
+
+  /// First-estimate Jacobians: once a prior refers to this frame, Jacobians are taken at the point
+  /// where it was linearised, and the state is that point plus delta
+  /// (docs/math/marginalisation.md).
+  bool linearised = false;
+  NavState lin_state;
+  ImuBias lin_bias;
+  Vector15d delta = Vector15d::Zero();
+
+  /// Readings since the frame before it in the window; absent where the prior holds that link.
+  std::optional<Preintegration> imu;
+  Matrix15d imu_sqrt_information = Matrix15d::Zero();
+  bool imu_tail_held = false;  ///< the last reading was held: no later one was known yet
+
+  int still_since = -1;  ///< id of the frame where the car came to rest; -1 in motion
+
+  /// Velocity of the vehicle's origin in the vehicle frame, and how well each axis is known; sigma
+  /// 0 means nothing is known of that axis.
+  Eigen::Vector3d body_velocity = Eigen::Vector3d::Zero();
+  Eigen::Vector3d body_velocity_sigma = Eigen::Vector3d::Zero();
+  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();  ///< reading at the frame, rad/s
+
+  /// The state used for Jacobians.
+  [[nodiscard]] const NavState& jacobianState() const { return linearised ? lin_state : state; }
+  [[nodiscard]] const ImuBias& jacobianBias() const { return linearised ? lin_bias : bias; }
+  /// Adds a tangent step to the state.
+  void apply(const Vector15d& step);
+  /// Fixes the point of linearisation at the present state.
+  void fixLinearisation();
+};
+
+struct WindowObservation {
+  int frame_id = 0;
+  int camera = 0;
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  Eigen::Vector3d ray = Eigen::Vector3d::Zero();  ///< unit, camera frame
+  double sigma_px = 1.0;
+};
+
+/// A landmark: a direction and an inverse distance in the camera that saw it first. Three degrees
+/// of freedom: two in the plane across the direction, then the inverse distance.
+struct WindowFeature {
+  std::uint64_t id = 0;
+  std::vector<WindowObservation> observations;  ///< in the order of time
+  bool has_point = false;
+  bool selected = false;  ///< takes part in the solve
+  int anchor_frame_id = 0;
+  int anchor_camera = 0;
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit, anchor camera frame
+  double inverse_distance = 0.0;                         ///< 1/m
+  int failures = 0;                                      ///< how often its point was thrown away
+  int last_seen_id = 0;                                  ///< newest frame that saw it
+};
+
+/// What is known of states of the window from all that left it: a quadratic in the frames' deltas,
+/// 0.5 d' H d + b' d.
+struct WindowPrior {
+  std::vector<int> frame_ids;
+  Eigen::MatrixXd H;
+  Eigen::VectorXd b;
+};
+
+/// Where the first frame is: holds position and heading, and what is known of velocity and biases.
+struct StartPrior {
+  int frame_id = -1;  ///< -1: absent
+  NavState state;
+  ImuBias bias;
+  Vector15d sigma = Vector15d::Zero();  ///< rotation in odom axes; 0 means unknown
+};
+
+struct Window {
+  std::vector<VioCamera> cameras;
+  SE3 T_imu_vehicle;
+  Eigen::Vector3d gravity = Eigen::Vector3d(0.0, 0.0, -9.81);
+  std::vector<WindowFrame> frames;  ///< in the order of time
+  std::map<std::uint64_t, WindowFeature> features;
+  WindowPrior prior;
+  StartPrior start;
+
+  /// Position in frames of a frame id, or -1.
+  [[nodiscard]] int indexOf(int frame_id) const;
+  [[nodiscard]] WindowFrame* find(int frame_id);
+  [[nodiscard]] const WindowFrame* find(int frame_id) const;
+  /// A feature's point in the odom frame.
+  [[nodiscard]] Eigen::Vector3d pointOf(const WindowFeature& feature) const;
+};
+
+/// Two unit vectors across a direction, as columns; a smooth function of it but near -z.
+Eigen::Matrix<double, 3, 2> tangentBasis(const Eigen::Vector3d& direction);
+
+/// Moves a feature's anchor to another of its observations; the point stays where it is. False
+/// where it lies at the new camera's centre or at infinity behind it.
+bool moveAnchor(const Window& window, WindowFeature& feature, const WindowObservation& to);
+
+/// Inverse of the Cholesky factor of the readings' covariance, floored so that a single step (which
+/// cannot tell position from velocity) is still invertible.
+Matrix15d sqrtInformation(const Preintegration& imu);
+
+}  // namespace parkade

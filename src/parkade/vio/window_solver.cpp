@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/vio/window_solver.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "parkade/vio/reprojection.hpp"
+
+namespace parkade {
+namespace {
+
+constexpr int kState = 15;
+constexpr double kMaxDamping = 1e6;
+
+// What a step changes, to be able to take it back.
+struct Backup {
+  struct Frame {
+    NavState state;
+    ImuBias bias;
+    Vector15d delta;
+  };
+  std::vector<Frame> frames;
+  std::vector<std::pair<Eigen::Vector3d, double>> landmarks;
+
+  void save(const Window& window, const std::vector<WindowFeature*>& features) {
+    frames.clear();
+    landmarks.clear();
+    for (const WindowFrame& f : window.frames) frames.push_back({f.state, f.bias, f.delta});
+    for (const WindowFeature* f : features) {
+      landmarks.emplace_back(f->direction, f->inverse_distance);
+    }
+  }
+  void restore(Window& window, const std::vector<WindowFeature*>& features) const {
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      window.frames[i].state = frames[i].state;
+      window.frames[i].bias = frames[i].bias;
+      window.frames[i].delta = frames[i].delta;
+    }
+    for (std::size_t i = 0; i < features.size(); ++i) {
+      features[i]->direction = landmarks[i].first;
+      features[i]->inverse_distance = landmarks[i].second;
+    }
+  }
+};
+
+}  // namespace
+
+SolveSummary solveWindow(Window& window, const std::vector<WindowFeature*>& features,
+                         const SolveOptions& options) {
+  SolveSummary summary;
+  if (window.frames.empty()) return summary;
+  FactorSelection selection = FactorSelection::all(window);
+  selection.features = features;
+  LinearSystem system(options.huber, options.still);
+  LinearSystem trial(options.huber, options.still);
+  Backup backup;
+  double damping = 0.0;
+  system.linearise(window, selection);
+  summary.initial_cost = system.cost();
+  summary.final_cost = system.cost();
+  summary.observations = system.numObservations();
+
+  while (summary.iterations < options.max_iterations) {
+    ++summary.iterations;
+    system.reduce(damping);
+    const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> llt(system.reducedH());
+    if (llt.info() != Eigen::Success) {
+      if (damping > kMaxDamping) break;
+      damping = std::max(1e-4, 10.0 * damping);
+      continue;
+    }
+    const Eigen::VectorXd step = -llt.solve(system.reducedB());
+    if (!step.allFinite()) break;
+
+    backup.save(window, features);
+    double gradient_dot_step = system.gradient().dot(step);
+    system.applyToLandmarks(step, gradient_dot_step);
+    for (std::size_t i = 0; i < window.frames.size(); ++i) {
+      window.frames[i].apply(step.segment<kState>(kState * static_cast<Eigen::Index>(i)));
+    }
+    const double decrease = -0.5 * gradient_dot_step;
+    // The newest frame's marginal needs only the last block of the Cholesky factor. Damping would
+    // pass for knowledge of where the whole window is.
+    if (damping == 0.0) {
+      const Matrix15d corner = llt.matrixLLT().bottomRightCorner<kState, kState>();
+      const Matrix15d corner_inverse =
+          corner.triangularView<Eigen::Lower>().solve(Matrix15d::Identity());
+      summary.newest_covariance = corner_inverse.transpose() * corner_inverse;
+      summary.has_covariance = true;
+    }
+    summary.ok = true;
+    if (decrease < options.min_decrease || summary.iterations == options.max_iterations) {
+      summary.final_cost = system.cost() - decrease;
+      break;
+    }
+    trial.linearise(window, selection);
+    if (trial.cost() <= system.cost() + options.min_decrease) {
+      std::swap(system, trial);
+      damping = damping > 1e-4 ? 0.1 * damping : 0.0;
+      summary.final_cost = system.cost();
+    } else {
+      backup.restore(window, features);
+      damping = std::max(1e-4, 10.0 * damping);
+      if (damping > kMaxDamping) break;
+    }
+  }
+  return summary;
+}
+
+double whitenedError(const Window& window, const WindowFeature& feature,
+                     const WindowObservation& observation) {
+  const WindowFrame* anchor = window.find(feature.anchor_frame_id);
+  const WindowFrame* target = window.find(observation.frame_id);
+  if (anchor == nullptr || target == nullptr) return std::numeric_limits<double>::infinity();
+  const PoseMatrices anchor_pose(anchor->state);
+  const PoseMatrices target_pose(target->state);
+  Eigen::Vector2d pixel;
+  if (!reproject(window.cameras[static_cast<std::size_t>(feature.anchor_camera)],
+                 window.cameras[static_cast<std::size_t>(observation.camera)], anchor_pose,
+                 target_pose, anchor_pose, target_pose, feature.direction, feature.inverse_distance,
+                 pixel)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return (pixel - observation.pixel).norm() / observation.sigma_px;
+}
+
+Eigen::Matrix3d landmarkCovariance(const Window& window, const WindowFeature& feature) {
+  const WindowFrame* anchor = window.find(feature.anchor_frame_id);
+  if (anchor == nullptr) return Eigen::Matrix3d::Zero();
+  const VioCamera& anchor_camera = window.cameras[static_cast<std::size_t>(feature.anchor_camera)];
+  const PoseMatrices anchor_pose(anchor->state);
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  information(2, 2) = 1e-2;
+  for (const WindowObservation& o : feature.observations) {
+    const WindowFrame* target = window.find(o.frame_id);
+    if (target == nullptr) continue;
+    const PoseMatrices target_pose(target->state);
+    Eigen::Vector2d pixel;
+    ReprojectionJacobians j;
+    if (!reproject(anchor_camera, window.cameras[static_cast<std::size_t>(o.camera)], anchor_pose,
+                   target_pose, anchor_pose, target_pose, feature.direction,
+                   feature.inverse_distance, pixel, &j)) {
+      continue;
+    }
+    information += j.d_px_d_landmark.transpose() * j.d_px_d_landmark / (o.sigma_px * o.sigma_px);
+  }
+  // p = R (direction / rho): along the ray the inverse distance counts with -1 / rho^2.
+  const double rho = feature.inverse_distance;
+  Eigen::Matrix3d by_landmark;
+  by_landmark.leftCols<2>() = tangentBasis(feature.direction) / rho;
+  by_landmark.col(2) = -feature.direction / (rho * rho);
+  const Eigen::Matrix3d J =
+      anchor_pose.R * anchor_camera.T_imu_cam.rotation().matrix() * by_landmark;
+  return J * information.inverse() * J.transpose();
+}
+
+}  // namespace parkade

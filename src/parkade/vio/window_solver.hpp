@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "parkade/vio/linear_system.hpp"
+#include "parkade/vio/window.hpp"
+
+namespace parkade {
+
+struct SolveOptions {
+  int max_iterations = 4;
+  double huber = 2.0;  ///< standard deviations
+  StillSigma still;
+  /// Ends the solve once a step promises to lower the cost (half the chi-square) by less.
+  double min_decrease = 1e-3;
+};
+
+struct SolveSummary {
+  bool ok = false;  ///< false: no step could be computed; the window is as before
+  int iterations = 0;
+  int observations = 0;
+  double initial_cost = 0.0;
+  double final_cost = 0.0;  ///< as the last step predicts it
+  bool has_covariance = false;
+  /// Of the newest frame's tangent, from the information of the whole window and its prior.
+  Matrix15d newest_covariance = Matrix15d::Zero();
+};
+
+/// Levenberg-Marquardt over the frames and the given landmarks, which are eliminated in each step.
+/// The number of steps depends on the data alone, never on the clock.
+SolveSummary solveWindow(Window& window, const std::vector<WindowFeature*>& features,
+                         const SolveOptions& options);
+
+/// Whitened distance of an observation from its landmark's projection; infinity where it does not
+/// project.
+double whitenedError(const Window& window, const WindowFeature& feature,
+                     const WindowObservation& observation);
+
+/// Covariance of a landmark's point in the odom frame, given the frames' poses, m^2.
+Eigen::Matrix3d landmarkCovariance(const Window& window, const WindowFeature& feature);
+
+}  // namespace parkade
