@@ -1,0 +1,286 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/sim/render/frame.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "parkade/core/check.hpp"
+#include "parkade/sim/render/parallel.hpp"
+#include "parkade/sim/render/reflection.hpp"
+
+namespace parkade::sim {
+namespace {
+
+constexpr float kFar = 1.0e4F;
+constexpr int kTile = RayTable::kTile;
+constexpr int kTilePixels = kTile * kTile;
+constexpr int kMaxSamples = 4;
+constexpr float kFaintest = 0.02F;  // mirror images weaker than this are not traced off the floor
+
+/// The samples of a tile: [pixel * samples + sample].
+struct TileSamples {
+  std::array<SurfaceHit, kTilePixels * kMaxSamples> hits;
+  std::array<Eigen::Vector3f, kTilePixels * kMaxSamples> directions;
+};
+
+class FrameTracer {
+ public:
+  FrameTracer(const FrameSetup& setup, const RayTable& table, const SE3& T_world_cam)
+      : setup_(setup),
+        table_(table),
+        R_(T_world_cam.rotation().matrix().cast<float>()),
+        eye_(T_world_cam.translation().cast<float>()),
+        samples_(table.grid() * table.grid()) {}
+
+  void traceTile(int tile, TileSamples& out) const;
+  void shadeTile(int tile, const TileSamples& in, Radiance& out, ReflectionBuffer* mirror) const;
+  void labelTile(int tile, const TileSamples& in, Truth& out) const;
+
+ private:
+  [[nodiscard]] bool movesIn(int tile) const;
+  Eigen::Vector3f shadePixel(const SurfaceHit* hits, const Eigen::Vector3f* directions,
+                             float spread, int x, int y, MirrorRay& mirror) const;
+
+  const FrameSetup& setup_;
+  const RayTable& table_;
+  const Eigen::Matrix3f R_;
+  const Eigen::Vector3f eye_;
+  const int samples_;
+};
+
+/// Whether anything that moves may show in a tile.
+bool FrameTracer::movesIn(int tile) const {
+  const RayTable::Cone& cone = table_.cone(tile);
+  const Eigen::Vector3f axis = R_ * cone.axis;
+  const float angle = std::acos(std::clamp(cone.cosine, -1.0F, 1.0F));
+  for (const PlacedObject& object : setup_.moment->objects) {
+    const Eigen::Vector3f d = object.center_world - eye_;
+    const float distance = d.norm();
+    if (distance <= object.shape->radius) {
+      return true;
+    }
+    const float wide = angle + std::asin(object.shape->radius / distance);
+    if (wide > 3.1F || d.dot(axis) > distance * std::cos(wide)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void FrameTracer::traceTile(int tile, TileSamples& out) const {
+  const RTCScene moving =
+      setup_.moment->scene != nullptr && movesIn(tile) ? setup_.moment->scene.get() : nullptr;
+  const RayTable::Packet* packets = table_.packets(tile);
+  RayPacket rays;
+  for (int p = 0; p < table_.packetsPerTile(); ++p) {
+    const RayTable::Packet& packet = packets[p];
+    rays.clear(setup_.mask);
+    for (int k = 0; k < kPacket; ++k) {
+      rays.valid[k] = (packet.valid >> static_cast<unsigned>(k) & 1U) != 0U ? -1 : 0;
+      rays.rays.ray.org_x[k] = eye_.x();
+      rays.rays.ray.org_y[k] = eye_.y();
+      rays.rays.ray.org_z[k] = eye_.z();
+      rays.rays.ray.dir_x[k] =
+          R_(0, 0) * packet.x[k] + R_(0, 1) * packet.y[k] + R_(0, 2) * packet.z[k];
+      rays.rays.ray.dir_y[k] =
+          R_(1, 0) * packet.x[k] + R_(1, 1) * packet.y[k] + R_(1, 2) * packet.z[k];
+      rays.rays.ray.dir_z[k] =
+          R_(2, 0) * packet.x[k] + R_(2, 1) * packet.y[k] + R_(2, 2) * packet.z[k];
+      rays.rays.ray.tfar[k] = kFar;
+    }
+    if (packet.valid != 0U) {
+      traceBoth(*setup_.tracer, moving, rays, true);
+    }
+    for (int k = 0; k < kPacket; ++k) {
+      int x = 0;
+      int y = 0;
+      int sample = 0;
+      table_.place(p, k, x, y, sample);
+      const std::size_t i = static_cast<std::size_t>((y * kTile + x) * samples_ + sample);
+      out.hits[i] = hitOf(*setup_.tracer, rays, k);
+      if (rays.valid[k] == 0) {
+        out.hits[i].t = -1.0F;  // no ray at all: black
+      }
+      out.directions[i] << rays.rays.ray.dir_x[k], rays.rays.ray.dir_y[k], rays.rays.ray.dir_z[k];
+    }
+  }
+}
+
+Eigen::Vector3f FrameTracer::shadePixel(const SurfaceHit* hits, const Eigen::Vector3f* directions,
+                                        float spread, int x, int y, MirrorRay& mirror) const {
+  const Shader& shader = *setup_.shader;
+  const Moment& moment = *setup_.moment;
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  float best = 0.0F;
+  unsigned done = 0;
+  for (int i = 0; i < samples_; ++i) {
+    if ((done >> static_cast<unsigned>(i) & 1U) != 0U || hits[i].t < 0.0F) {
+      continue;
+    }
+    if (hits[i].triangle == kNoTriangle) {
+      sum += shader.sky();
+      continue;
+    }
+    // Samples on the same surface are shaded as one.
+    std::array<const SurfaceHit*, kMaxSamples> group{&hits[i]};
+    std::array<const Eigen::Vector3f*, kMaxSamples> rays{&directions[i]};
+    int count = 1;
+    const auto material = shader.triangleOf(hits[i], moment).material;
+    const Eigen::Vector3f& n = hits[i].geometric_normal;
+    for (int j = i + 1; j < samples_; ++j) {
+      if (hits[j].triangle == kNoTriangle || hits[j].object != hits[i].object) {
+        continue;
+      }
+      if (hits[j].triangle != hits[i].triangle) {
+        const Eigen::Vector3f& m = hits[j].geometric_normal;
+        const float dot = n.dot(m);
+        if (shader.triangleOf(hits[j], moment).material != material ||
+            dot * dot < 0.97F * n.squaredNorm() * m.squaredNorm()) {
+          continue;
+        }
+      }
+      done |= 1U << static_cast<unsigned>(j);
+      group[static_cast<std::size_t>(count)] = &hits[j];
+      rays[static_cast<std::size_t>(count)] = &directions[j];
+      ++count;
+    }
+    Surface surface;
+    shader.shade(group.data(), rays.data(), count, eye_, spread, samples_, moment, surface);
+    sum += static_cast<float>(count) * surface.radiance;
+    const float cosine = -rays[0]->dot(surface.normal);
+    const float weight = mirrorReflectance(surface.specular, surface.roughness, cosine) *
+                         static_cast<float>(count) / static_cast<float>(samples_);
+    if (weight > best && (surface.is_floor || weight > kFaintest)) {
+      best = weight;
+      mirror = makeMirrorRay(shader.lamps(), surface, *rays[0], weight, x, y);
+    }
+  }
+  return sum / static_cast<float>(samples_);
+}
+
+void FrameTracer::shadeTile(int tile, const TileSamples& in, Radiance& out,
+                            ReflectionBuffer* mirror) const {
+  const int left = tile % table_.tilesX() * kTile;
+  const int top = tile / table_.tilesX() * kTile;
+  std::array<MirrorRay, kTilePixels> pending;
+  int count = 0;
+  for (int y = 0; y < kTile && top + y < out.height; ++y) {
+    for (int x = 0; x < kTile && left + x < out.width; ++x) {
+      const int first = (y * kTile + x) * samples_;
+      MirrorRay ray;
+      const std::size_t pixel = static_cast<std::size_t>(top + y) * out.width + left + x;
+      out.pixels[pixel] = shadePixel(in.hits.data() + first, in.directions.data() + first,
+                                     table_.spread(left + x, top + y), left + x, top + y, ray);
+      if (ray.weight > 0.0F) {
+        ray.pixel = static_cast<std::uint32_t>(pixel);
+        pending[static_cast<std::size_t>(count++)] = ray;
+      }
+    }
+  }
+  if (mirror == nullptr) {
+    return;
+  }
+  traceMirrorRays(setup_, pending.data(), count, out, *mirror);
+}
+
+void FrameTracer::labelTile(int tile, const TileSamples& in, Truth& out) const {
+  const int left = tile % table_.tilesX() * kTile;
+  const int top = tile / table_.tilesX() * kTile;
+  for (int y = 0; y < kTile && top + y < out.height; ++y) {
+    for (int x = 0; x < kTile && left + x < out.width; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y * kTile + x);
+      const SurfaceHit& hit = in.hits[i];
+      if (hit.t < 0.0F || hit.triangle == kNoTriangle) {
+        continue;
+      }
+      const std::size_t pixel = static_cast<std::size_t>(top + y) * out.width + left + x;
+      out.labels[pixel] =
+          setup_.shader->labelOf(hit, eye_ + hit.t * in.directions[i], *setup_.moment);
+      out.instances[pixel] =
+          hit.object < 0 ? setup_.shader->triangleOf(hit, *setup_.moment).instance
+                         : setup_.moment->objects[static_cast<std::size_t>(hit.object)].instance;
+      out.depths[pixel] = hit.t;
+    }
+  }
+}
+
+}  // namespace
+
+void traceBoth(const StaticTracer& tracer, RTCScene moving, RayPacket& packet, bool coherent) {
+  tracer.intersect(packet, coherent);
+  if (moving != nullptr) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags =
+        coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    rtcIntersect16(packet.valid, moving, &context, &packet.rays);
+  }
+}
+
+SurfaceHit hitOf(const StaticTracer& tracer, const RayPacket& packet, int lane) {
+  SurfaceHit hit;
+  const auto& raw = packet.rays.hit;
+  if (raw.geomID[lane] == RTC_INVALID_GEOMETRY_ID || packet.valid[lane] == 0) {
+    return hit;
+  }
+  if (raw.instID[0][lane] != RTC_INVALID_GEOMETRY_ID) {
+    hit.object = static_cast<std::int32_t>(raw.instID[0][lane]);
+    hit.triangle = raw.primID[lane];
+  } else {
+    hit.triangle = tracer.triangleOf(packet, lane);
+  }
+  hit.u = raw.u[lane];
+  hit.v = raw.v[lane];
+  hit.t = packet.rays.ray.tfar[lane];
+  hit.geometric_normal = packet.geometricNormal(lane);
+  return hit;
+}
+
+void traceFrame(const FrameSetup& setup, const RayTable& table, const SE3& T_world_cam,
+                Radiance& out) {
+  out.width = table.width();
+  out.height = table.height();
+  out.pixels.assign(static_cast<std::size_t>(out.width) * out.height, Eigen::Vector3f::Zero());
+  ReflectionBuffer mirror;
+  if (setup.reflections) {
+    mirror.reset(out.width, out.height);
+  }
+  const FrameTracer tracer(setup, table, T_world_cam);
+  parallelFor(setup.threads, static_cast<std::size_t>(table.tilesY()), [&](std::size_t row) {
+    const FlushDenormals flush;
+    thread_local TileSamples samples;
+    for (int i = 0; i < table.tilesX(); ++i) {
+      const int tile = static_cast<int>(row) * table.tilesX() + i;
+      tracer.traceTile(tile, samples);
+      tracer.shadeTile(tile, samples, out, setup.reflections ? &mirror : nullptr);
+    }
+  });
+  if (setup.reflections) {
+    addFloorReflections(mirror, setup.threads, out);
+  }
+}
+
+void traceTruth(const FrameSetup& setup, const RayTable& table, const SE3& T_world_cam,
+                Truth& out) {
+  PARKADE_CHECK(table.grid() == 1, "{} samples a side", table.grid());
+  out.width = table.width();
+  out.height = table.height();
+  const std::size_t size = static_cast<std::size_t>(out.width) * out.height;
+  out.labels.assign(size, SemanticClass::kUnknown);
+  out.instances.assign(size, 0U);
+  out.depths.assign(size, 0.0F);
+  const FrameTracer tracer(setup, table, T_world_cam);
+  parallelFor(setup.threads, static_cast<std::size_t>(table.tilesY()), [&](std::size_t row) {
+    const FlushDenormals flush;
+    thread_local TileSamples samples;
+    for (int i = 0; i < table.tilesX(); ++i) {
+      const int tile = static_cast<int>(row) * table.tilesX() + i;
+      tracer.traceTile(tile, samples);
+      tracer.labelTile(tile, samples, out);
+    }
+  });
+}
+
+}  // namespace parkade::sim

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "parkade/geometry/se3.hpp"
+#include "parkade/sim/render/moment.hpp"
+#include "parkade/sim/render/ray_table.hpp"
+#include "parkade/sim/render/shading.hpp"
+
+namespace parkade::sim {
+
+/// A picture in linear light.
+struct Radiance {
+  int width = 0;
+  int height = 0;
+  std::vector<Eigen::Vector3f> pixels;  ///< red, green, blue in cd/m^2, row by row
+};
+
+/// Per pixel: what it shows. Sampled at the pixel's centre.
+struct Truth {
+  int width = 0;
+  int height = 0;
+  std::vector<SemanticClass> labels;
+  std::vector<std::uint32_t> instances;  ///< 0: structure or nothing
+  std::vector<float> depths;             ///< m along the ray; 0: nothing hit
+};
+
+/// What a frame is traced with.
+struct FrameSetup {
+  const StaticTracer* tracer = nullptr;
+  const Shader* shader = nullptr;
+  const Moment* moment = nullptr;
+  bool reflections = true;
+  unsigned mask = kMaskAll;  ///< of primary rays
+  int threads = 1;
+};
+
+/// Traces and shades a frame. The same numbers for any number of threads.
+void traceFrame(const FrameSetup& setup, const RayTable& table, const SE3& T_world_cam,
+                Radiance& out);
+
+/// Labels, instances and depths; the table must have one sample per pixel.
+void traceTruth(const FrameSetup& setup, const RayTable& table, const SE3& T_world_cam, Truth& out);
+
+/// Traces a packet through the static scene and then through what moves (where not null).
+void traceBoth(const StaticTracer& tracer, RTCScene moving, RayPacket& packet, bool coherent);
+
+/// A lane's result after traceBoth.
+SurfaceHit hitOf(const StaticTracer& tracer, const RayPacket& packet, int lane);
+
+}  // namespace parkade::sim

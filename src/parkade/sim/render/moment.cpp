@@ -1,0 +1,218 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/sim/render/moment.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "parkade/core/check.hpp"
+
+namespace parkade::sim {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr int kOpennessRays = 32;
+constexpr float kOpennessReach = 1.2F;   // m
+constexpr float kBeamCandela = 4000.0F;  // dipped, below the cut-off
+constexpr float kBeamReach = 30.0F;      // m
+constexpr float kDarkest = 0.12F;        // light left below the middle of a car
+
+/// Share of directions around a vertex's normal that leave the object. Directions that meet the
+/// floor below the object count as hidden.
+std::vector<float> opennessOf(const ObjectMesh& shape) {
+  const RenderMesh& mesh = shape.mesh;
+  std::vector<float> out(mesh.positions.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const Eigen::Vector3f n = mesh.normals[i];
+    const Eigen::Vector3f p = mesh.positions[i] + 0.01F * n;
+    int open = 0;
+    for (int begin = 0; begin < kOpennessRays; begin += kPacket) {
+      RayPacket rays;
+      rays.clear(kMaskAll);
+      bool below[kPacket];
+      for (int k = 0; k < kPacket; ++k) {
+        const int s = begin + k;
+        const float z = 1.0F - 2.0F * (s + 0.5F) / kOpennessRays;
+        const float b = 2.39996323F * s;  // golden angle
+        const float r = std::sqrt(1.0F - z * z);
+        // A point of the sphere plus the normal is distributed by the cosine to the normal.
+        Eigen::Vector3f d = n + 0.999F * Eigen::Vector3f(r * std::cos(b), r * std::sin(b), z);
+        d.normalize();
+        rays.set(k, p, d, kOpennessReach);
+        const Eigen::Vector3f ground = p + d * (d.z() < -1e-3F ? p.z() / -d.z() : 0.0F);
+        below[k] = d.z() < -1e-3F && ground.x() > shape.box_min.x() &&
+                   ground.x() < shape.box_max.x() && ground.y() > shape.box_min.y() &&
+                   ground.y() < shape.box_max.y();
+      }
+      RTCIntersectContext context;
+      rtcInitIntersectContext(&context);
+      rtcOccluded16(rays.valid, shape.scene.get(), &context, &rays.rays.ray);
+      for (int k = 0; k < kPacket; ++k) {
+        open += !below[k] && rays.rays.ray.tfar[k] >= 0.0F ? 1 : 0;
+      }
+    }
+    out[i] = static_cast<float>(open) / kOpennessRays;
+  }
+  return out;
+}
+
+}  // namespace
+
+float Moment::floorShade(float x, float y) const {
+  float shade = 1.0F;
+  for (const PlacedObject& object : objects) {
+    const Eigen::Vector2f d(x - object.shadow_center.x(), y - object.shadow_center.y());
+    const float along = std::abs(d.dot(object.shadow_axis)) - object.shadow_half.x();
+    const float across = std::abs(object.shadow_axis.x() * d.y() - object.shadow_axis.y() * d.x()) -
+                         object.shadow_half.y();
+    const float reach = object.shadow_height;
+    if (along > reach || across > reach) {
+      continue;
+    }
+    const float outside = std::sqrt(std::max(along, 0.0F) * std::max(along, 0.0F) +
+                                    std::max(across, 0.0F) * std::max(across, 0.0F));
+    const float inside = std::min(std::max(along, across), 0.0F);  // negative below the object
+    // Half dark at the edge, dark 0.4 m further in, free at its height's distance.
+    const float depth = std::clamp(-inside / 0.4F, 0.0F, 1.0F);
+    const float fade = std::max(0.0F, 1.0F - outside / reach);
+    const float dark = 0.5F * fade * fade * fade + 0.5F * depth * (2.0F - depth);
+    shade *= 1.0F - (1.0F - kDarkest) * dark;
+  }
+  return shade;
+}
+
+Eigen::Vector3f Moment::beamLux(const Eigen::Vector3f& p, const Eigen::Vector3f& n) const {
+  float lux = 0.0F;
+  for (const Beam& beam : beams) {
+    const Eigen::Vector3f d = p - beam.position;
+    const float d2 = d.squaredNorm();
+    if (d2 > kBeamReach * kBeamReach) {
+      continue;
+    }
+    const float inverse = 1.0F / std::sqrt(std::max(d2, 0.04F));
+    const float cos_surface = -d.dot(n) * inverse;
+    const float cos_beam = d.dot(beam.direction) * inverse;
+    if (cos_surface <= 0.0F || cos_beam < 0.7F) {
+      continue;
+    }
+    // A wide lobe, cut off above the horizon as a dipped beam is.
+    const float lobe = (cos_beam - 0.7F) / 0.3F;
+    const float up = d.z() * inverse;
+    const float cut = std::clamp((0.03F - up) / 0.06F, 0.08F, 1.0F);
+    lux += kBeamCandela * lobe * lobe * lobe * cut * cos_surface * inverse * inverse;
+  }
+  return Eigen::Vector3f(1.0F, 0.97F, 0.9F) * lux;
+}
+
+MomentMaker::MomentMaker(const Scene& scene, RTCDevice device, const BakedLight& light,
+                         const SubdivisionLimits& limits)
+    : scene_(scene), device_(device), light_(light), limits_(limits) {}
+
+std::shared_ptr<const ObjectMesh> MomentMaker::shapeOf(int mesh) const {
+  const std::lock_guard lock(mutex_);
+  auto& known = shapes_[mesh];
+  if (known != nullptr) {
+    return known;
+  }
+  PARKADE_CHECK(mesh >= 0 && mesh < static_cast<int>(scene_.meshes.size()), "mesh {} of {}", mesh,
+                scene_.meshes.size());
+  auto shape = std::make_shared<ObjectMesh>();
+  shape->mesh = prepareMesh(scene_.meshes[static_cast<std::size_t>(mesh)], scene_, limits_);
+  PARKADE_CHECK(!shape->mesh.triangles.empty(), "mesh {} is empty", mesh);
+  shape->mesh.positions.reserve(shape->mesh.positions.size() + 1);
+  shape->box_min.setConstant(std::numeric_limits<float>::max());
+  shape->box_max = -shape->box_min;
+  for (const Eigen::Vector3f& p : shape->mesh.positions) {
+    shape->box_min = shape->box_min.cwiseMin(p);
+    shape->box_max = shape->box_max.cwiseMax(p);
+  }
+  shape->center = 0.5F * (shape->box_min + shape->box_max);
+  shape->radius = 0.5F * (shape->box_max - shape->box_min).norm();
+  shape->scene.reset(rtcNewScene(device_));
+  attachTriangles(device_, shape->scene.get(), shape->mesh, 0,
+                  static_cast<std::uint32_t>(shape->mesh.triangles.size()), kMaskAll);
+  rtcCommitScene(shape->scene.get());
+  shape->openness = opennessOf(*shape);
+  known = std::move(shape);
+  return known;
+}
+
+void MomentMaker::place(Moment& moment, int mesh, const SE3& T_world_object, std::uint32_t instance,
+                        SemanticClass label) const {
+  PlacedObject object;
+  object.shape = shapeOf(mesh);
+  const ObjectMesh& shape = *object.shape;
+  object.R_world_object = T_world_object.rotation().matrix().cast<float>();
+  object.p_world = T_world_object.translation().cast<float>();
+  object.center_world = object.R_world_object * shape.center + object.p_world;
+  object.instance = instance;
+  object.label = label;
+  object.vertex_lux.reserve(shape.mesh.positions.size());
+  for (std::size_t i = 0; i < shape.mesh.positions.size(); ++i) {
+    const Eigen::Vector3f p = object.R_world_object * shape.mesh.positions[i] + object.p_world;
+    const Eigen::Vector3f n = object.R_world_object * shape.mesh.normals[i];
+    object.vertex_lux.push_back(ProbeGrid::evaluate(light_.probes.cubeAt(p), n) *
+                                (0.1F + 0.9F * shape.openness[i]));
+  }
+  object.shadow_center = object.center_world.head<2>();
+  const Eigen::Vector2f axis = object.R_world_object.col(0).head<2>();
+  object.shadow_axis = axis.norm() > 1e-3F ? Eigen::Vector2f(axis.normalized())
+                                           : Eigen::Vector2f(Eigen::Vector2f::UnitX());
+  const Eigen::Vector3f half = 0.5F * (shape.box_max - shape.box_min);
+  // Round corners and the bumpers' ground clearance make the shadow a little smaller than the box.
+  object.shadow_half = (half.head<2>().array() - 0.08F).max(0.1F);
+  object.shadow_height = std::min(half.z(), 0.8F);
+  moment.objects.push_back(std::move(object));
+}
+
+std::shared_ptr<const Moment> MomentMaker::make(double t,
+                                                const std::optional<SE3>& T_world_vehicle) const {
+  auto moment = std::make_shared<Moment>();
+  moment->t = t;
+  for (const MovingObject& object : scene_.moving) {
+    const SE3 T_world_object = object.pose(t);
+    place(*moment, object.mesh(t), T_world_object, object.instance, object.label);
+    if (object.head_lamps) {
+      for (const double side : {-1.0, 1.0}) {
+        const Eigen::Vector3d lamp(0.5 * object.box_size.x(), side * 0.36 * object.box_size.y(),
+                                   0.43 * object.box_size.z());
+        const Eigen::Vector3d forward(1.0, 0.0, -0.05);
+        moment->beams.push_back({(T_world_object * lamp).cast<float>(),
+                                 (T_world_object.rotation() * forward.normalized()).cast<float>()});
+      }
+    }
+  }
+  if (T_world_vehicle.has_value() && scene_.ego_mesh >= 0) {
+    place(*moment, scene_.ego_mesh, *T_world_vehicle, kEgoInstance, SemanticClass::kVehicle);
+  }
+  if (!moment->objects.empty()) {
+    moment->scene.reset(rtcNewScene(device_));
+    for (const PlacedObject& object : moment->objects) {
+      RTCGeometry instance = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
+      rtcSetGeometryInstancedScene(instance, object.shape->scene.get());
+      float columns[12];
+      Eigen::Map<Eigen::Matrix3f>{columns} = object.R_world_object;
+      Eigen::Map<Eigen::Vector3f>{columns + 9} = object.p_world;
+      rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+      rtcCommitGeometry(instance);
+      rtcAttachGeometry(moment->scene.get(), instance);
+      rtcReleaseGeometry(instance);
+    }
+    rtcCommitScene(moment->scene.get());
+  }
+  for (const Luminaire& lamp : scene_.luminaires) {
+    if (lamp.flicker_depth > 0.0F && moment->lamp_brightness.empty()) {
+      moment->lamp_brightness.assign(scene_.luminaires.size(), 1.0F);
+    }
+  }
+  for (std::size_t i = 0; i < moment->lamp_brightness.size(); ++i) {
+    const Luminaire& lamp = scene_.luminaires[i];
+    const double wave = 0.5 - 0.5 * std::cos(2.0 * kPi * lamp.flicker_hz * t);
+    moment->lamp_brightness[i] = 1.0F - lamp.flicker_depth * static_cast<float>(wave);
+  }
+  return moment;
+}
+
+}  // namespace parkade::sim

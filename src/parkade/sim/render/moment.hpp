@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "parkade/geometry/se3.hpp"
+#include "parkade/sim/render/light_bake.hpp"
+#include "parkade/sim/render/tracer.hpp"
+#include "parkade/sim/scene.hpp"
+
+namespace parkade::sim {
+
+/// Instance id of the own car in instance images.
+inline constexpr std::uint32_t kEgoInstance = 0xffffffffU;
+
+/// A mesh that moves, ready to be placed: its own tree, and how open each vertex is to its
+/// surroundings (0 hidden by the object itself, 1 free) when it stands on a floor.
+struct ObjectMesh {
+  RenderMesh mesh;
+  EmbreeScene scene;
+  std::vector<float> openness;
+  Eigen::Vector3f center = Eigen::Vector3f::Zero();
+  float radius = 0.0F;
+  Eigen::Vector3f box_min = Eigen::Vector3f::Zero();
+  Eigen::Vector3f box_max = Eigen::Vector3f::Zero();
+};
+
+/// An object at one moment.
+struct PlacedObject {
+  std::shared_ptr<const ObjectMesh> shape;
+  Eigen::Matrix3f R_world_object = Eigen::Matrix3f::Identity();
+  Eigen::Vector3f p_world = Eigen::Vector3f::Zero();
+  Eigen::Vector3f center_world = Eigen::Vector3f::Zero();  ///< of the bounding sphere
+  std::vector<Eigen::Vector3f> vertex_lux;
+  std::uint32_t instance = 0;
+  SemanticClass label = SemanticClass::kVehicle;
+  // Its shadow on the floor, as a rounded rectangle:
+  Eigen::Vector2f shadow_center = Eigen::Vector2f::Zero();
+  Eigen::Vector2f shadow_axis = Eigen::Vector2f::UnitX();
+  Eigen::Vector2f shadow_half = Eigen::Vector2f::Zero();
+  float shadow_height = 1.0F;
+};
+
+/// A head lamp's beam.
+struct Beam {
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();
+  Eigen::Vector3f direction = Eigen::Vector3f::UnitX();
+};
+
+/// All that moves, at one time: shared by the cameras of a frame set.
+struct Moment {
+  double t = 0.0;  ///< s
+  std::vector<PlacedObject> objects;
+  EmbreeScene scene;                   ///< instance id: index into objects; null without objects
+  std::vector<float> lamp_brightness;  ///< per luminaire, 1 where steady; empty: all steady
+  std::vector<Beam> beams;
+
+  /// How much of the floor's light at a place the objects leave.
+  [[nodiscard]] float floorShade(float x, float y) const;
+  /// Lux that head lamps bring to a surface.
+  [[nodiscard]] Eigen::Vector3f beamLux(const Eigen::Vector3f& p, const Eigen::Vector3f& n) const;
+};
+
+/// Makes moments; keeps the meshes that it has met. Thread-safe.
+class MomentMaker {
+ public:
+  MomentMaker(const Scene& scene, RTCDevice device, const BakedLight& light,
+              const SubdivisionLimits& limits);
+  [[nodiscard]] std::shared_ptr<const Moment> make(double t,
+                                                   const std::optional<SE3>& T_world_vehicle) const;
+
+ private:
+  [[nodiscard]] std::shared_ptr<const ObjectMesh> shapeOf(int mesh) const;
+  void place(Moment& moment, int mesh, const SE3& T_world_object, std::uint32_t instance,
+             SemanticClass label) const;
+
+  const Scene& scene_;
+  RTCDevice device_;
+  const BakedLight& light_;
+  SubdivisionLimits limits_;
+  mutable std::mutex mutex_;
+  mutable std::map<int, std::shared_ptr<const ObjectMesh>> shapes_;
+};
+
+}  // namespace parkade::sim

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/sim/render/ray_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "parkade/core/check.hpp"
+
+namespace parkade::sim {
+
+RayTable::RayTable(const Camera& camera, int grid, const Eigen::Vector2d& offset_px)
+    : width_(camera.width()),
+      height_(camera.height()),
+      grid_(grid),
+      tiles_x_((width_ + kTile - 1) / kTile),
+      tiles_y_((height_ + kTile - 1) / kTile) {
+  PARKADE_CHECK(grid == 1 || grid == 2, "{} samples a side", grid);
+  PARKADE_CHECK(width_ > 0 && height_ > 0, "{} x {} pixels", width_, height_);
+  const int tiles = tiles_x_ * tiles_y_;
+  packets_.resize(static_cast<std::size_t>(tiles) * packetsPerTile());
+  cones_.resize(static_cast<std::size_t>(tiles));
+  for (int tile = 0; tile < tiles; ++tile) {
+    fillTile(camera, tile, offset_px);
+  }
+  fillPixels(camera);
+}
+
+void RayTable::place(int packet, int lane, int& x, int& y, int& sample) const {
+  if (grid_ == 1) {  // 4 x 4 pixels
+    constexpr int kAcross = kTile / 4;
+    x = packet % kAcross * 4 + lane % 4;
+    y = packet / kAcross * 4 + lane / 4;
+    sample = 0;
+  } else {  // 2 x 2 pixels of 2 x 2 samples
+    constexpr int kAcross = kTile / 2;
+    x = packet % kAcross * 2 + lane / 4 % 2;
+    y = packet / kAcross * 2 + lane / 8;
+    sample = lane % 4;
+  }
+}
+
+void RayTable::fillTile(const Camera& camera, int tile, const Eigen::Vector2d& offset_px) {
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  std::vector<Eigen::Vector3f> rays;
+  for (int p = 0; p < packetsPerTile(); ++p) {
+    Packet& packet = packets_[static_cast<std::size_t>(tile) * packetsPerTile() + p];
+    for (int lane = 0; lane < kPacket; ++lane) {
+      int x = 0;
+      int y = 0;
+      int sample = 0;
+      place(p, lane, x, y, sample);
+      x += tile % tiles_x_ * kTile;
+      y += tile / tiles_x_ * kTile;
+      Eigen::Vector2d pixel = Eigen::Vector2d(x, y) + offset_px;
+      if (grid_ == 2) {
+        pixel += Eigen::Vector2d(sample % 2 - 0.5, sample / 2 - 0.5) * 0.5;
+      }
+      Eigen::Vector3d ray;
+      packet.x[lane] = packet.y[lane] = 0.0F;
+      packet.z[lane] = 1.0F;
+      if (x >= width_ || y >= height_ || !camera.unproject(pixel, ray) || !ray.allFinite()) {
+        continue;
+      }
+      ray.normalize();
+      packet.valid |= 1U << static_cast<unsigned>(lane);
+      packet.x[lane] = static_cast<float>(ray.x());
+      packet.y[lane] = static_cast<float>(ray.y());
+      packet.z[lane] = static_cast<float>(ray.z());
+      rays.push_back(ray.cast<float>());
+      sum += rays.back();
+    }
+  }
+  Cone& cone = cones_[static_cast<std::size_t>(tile)];
+  if (sum.norm() > 0.0F) {
+    cone.axis = sum.normalized();
+    cone.cosine = 1.0F;
+    for (const Eigen::Vector3f& ray : rays) {
+      cone.cosine = std::min(cone.cosine, ray.dot(cone.axis));
+    }
+  }
+}
+
+void RayTable::fillPixels(const Camera& camera) {
+  spread_.resize(static_cast<std::size_t>(width_) * height_);
+  axis_cosine_.resize(spread_.size(), 0.0F);
+  const double usual = 1.0 / camera.focalLength();
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y) * width_ + x;
+      Eigen::Vector3d center;
+      Eigen::Vector3d right;
+      Eigen::Vector3d down;
+      double angle = usual;
+      if (camera.unproject({x, y}, center)) {
+        axis_cosine_[i] = static_cast<float>(center.normalized().z());
+        if (camera.unproject({x + 0.5, y}, right) && camera.unproject({x, y + 0.5}, down)) {
+          const double a = 2.0 * (right.normalized() - center.normalized()).norm();
+          const double b = 2.0 * (down.normalized() - center.normalized()).norm();
+          angle = std::sqrt(a * b);
+        }
+      }
+      spread_[i] = static_cast<float>(angle / grid_);
+    }
+  }
+}
+
+}  // namespace parkade::sim

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "parkade/camera/camera.hpp"
+#include "parkade/sim/render/tracer.hpp"
+
+namespace parkade::sim {
+
+/// The rays of a camera's pixels, unprojected once: any camera model then costs the same. Samples
+/// lie on a grid of 1 x 1 or 2 x 2 places per pixel, in packets of sixteen near each other.
+class RayTable {
+ public:
+  static constexpr int kTile = 16;  ///< pixels a side
+
+  /// Directions in the camera frame; lanes without a ray have bit 0 in valid.
+  struct alignas(64) Packet {
+    float x[kPacket];
+    float y[kPacket];
+    float z[kPacket];
+    std::uint32_t valid = 0;
+  };
+  /// A cone around all rays of a tile, in the camera frame.
+  struct Cone {
+    Eigen::Vector3f axis = Eigen::Vector3f::UnitZ();
+    float cosine = -1.0F;  ///< of its half angle
+  };
+
+  /// grid: samples per pixel along each axis, 1 or 2. offset_px moves all samples (sub-frames).
+  RayTable(const Camera& camera, int grid, const Eigen::Vector2d& offset_px);
+
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+  [[nodiscard]] int grid() const { return grid_; }
+  [[nodiscard]] int tilesX() const { return tiles_x_; }
+  [[nodiscard]] int tilesY() const { return tiles_y_; }
+  [[nodiscard]] int packetsPerTile() const { return kTile * kTile * grid_ * grid_ / kPacket; }
+  [[nodiscard]] const Packet* packets(int tile) const {
+    return packets_.data() + static_cast<std::size_t>(tile) * packetsPerTile();
+  }
+  [[nodiscard]] const Cone& cone(int tile) const { return cones_[static_cast<std::size_t>(tile)]; }
+  /// The pixel inside its tile, and the sample of the pixel, that a lane of a packet serves.
+  void place(int packet, int lane, int& x, int& y, int& sample) const;
+  /// Angle between neighbouring samples at a pixel, radians (geometric mean of both axes).
+  [[nodiscard]] float spread(int x, int y) const {
+    return spread_[static_cast<std::size_t>(y) * width_ + x];
+  }
+  /// Cosine of the angle between a pixel's ray and the optical axis; 0 without a ray.
+  [[nodiscard]] const std::vector<float>& axisCosines() const { return axis_cosine_; }
+
+ private:
+  void fillTile(const Camera& camera, int tile, const Eigen::Vector2d& offset_px);
+  void fillPixels(const Camera& camera);
+
+  int width_;
+  int height_;
+  int grid_;
+  int tiles_x_;
+  int tiles_y_;
+  std::vector<Packet> packets_;
+  std::vector<Cone> cones_;
+  std::vector<float> spread_;
+  std::vector<float> axis_cosine_;
+};
+
+}  // namespace parkade::sim

@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/sim/render/reflection.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "parkade/sim/render/parallel.hpp"
+
+namespace parkade::sim {
+namespace {
+
+constexpr float kFar = 1.0e4F;
+constexpr float kLampRoom = 0.4F;       // m: what hangs this far below the lamps hides none
+constexpr float kMirrorSpread = 0.01F;  // rad: mirror images of textures are a little soft
+
+/// Slopes (microfacet normal against the mean normal) for the 16 places of the pattern: GGX with
+/// unit width, stratified; the widest tail is left out.
+const std::array<Eigen::Vector2f, 16>& lobePattern() {
+  static const std::array<Eigen::Vector2f, 16> kPattern = [] {
+    constexpr std::array<int, 16> kBayer{0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
+    std::array<Eigen::Vector2f, 16> pattern;
+    for (std::size_t i = 0; i < 16; ++i) {
+      const int n = kBayer[i];
+      const float u = 0.9F * (static_cast<float>(n) + 0.5F) / 16.0F;
+      const float angle = 2.39996323F * static_cast<float>(n);
+      const float slope = std::sqrt(u / (1.0F - u));
+      pattern[i] << slope * std::cos(angle), slope * std::sin(angle);
+    }
+    return pattern;
+  }();
+  return kPattern;
+}
+
+/// Weights of two 4-pixel means, one after the other.
+constexpr std::array<float, 7> kTent{1, 2, 3, 4, 3, 2, 1};
+
+}  // namespace
+
+void ReflectionBuffer::reset(int w, int h) {
+  width = w;
+  height = h;
+  incoming.assign(static_cast<std::size_t>(w) * h, Eigen::Vector4f::Zero());
+  weights.assign(incoming.size(), 0.0F);
+}
+
+MirrorRay makeMirrorRay(const LampMap& lamps, const Surface& surface,
+                        const Eigen::Vector3f& direction, float weight, int x, int y) {
+  MirrorRay ray;
+  ray.weight = weight;
+  ray.from_floor = surface.is_floor;
+  Eigen::Vector3f n = surface.normal;
+  if (surface.is_floor) {
+    const float cosine = -direction.dot(n);
+    ray.lamp_glow =
+        lamps.glow(surface.position, direction + 2.0F * cosine * n, cosine, surface.roughness);
+    const float alpha = surface.roughness * surface.roughness;
+    const Eigen::Vector2f& slope = lobePattern()[static_cast<std::size_t>(y % 4 * 4 + x % 4)];
+    n.x() += alpha * slope.x();
+    n.y() += alpha * slope.y();
+    n.normalize();
+  }
+  ray.direction = direction - 2.0F * direction.dot(n) * n;
+  const float rise = ray.direction.dot(surface.normal);
+  if (rise < 0.01F) {  // a microfacet that would mirror into the floor
+    ray.direction += (0.01F - rise) * surface.normal;
+    ray.direction.normalize();
+  }
+  ray.origin = surface.position + 0.002F * surface.normal;
+  return ray;
+}
+
+void traceMirrorRays(const FrameSetup& setup, const MirrorRay* rays, int count, Radiance& out,
+                     ReflectionBuffer& floor) {
+  for (int begin = 0; begin < count; begin += kPacket) {
+    RayPacket packet;
+    packet.clear(kMaskAll);
+    const int lanes = std::min(kPacket, count - begin);
+    for (int k = 0; k < lanes; ++k) {
+      // The floor's image of lamps comes from their map, without the noise of a few rays.
+      packet.rays.ray.mask[k] = rays[begin + k].from_floor ? kMaskAll & ~kMaskLamp : kMaskAll;
+      packet.set(k, rays[begin + k].origin, rays[begin + k].direction, kFar);
+    }
+    traceBoth(*setup.tracer, setup.moment->scene.get(), packet, true);
+    for (int k = 0; k < lanes; ++k) {
+      const MirrorRay& ray = rays[begin + k];
+      const SurfaceHit hit = hitOf(*setup.tracer, packet, k);
+      Eigen::Vector3f radiance = setup.shader->sky();
+      if (hit.triangle != kNoTriangle) {
+        const SurfaceHit* hits = &hit;
+        const Eigen::Vector3f* direction = &ray.direction;
+        Surface surface;
+        setup.shader->shade(&hits, &direction, 1, ray.origin, kMirrorSpread, 1, *setup.moment,
+                            surface);
+        radiance = surface.radiance;
+      }
+      if (ray.from_floor) {
+        const float reached = hit.triangle == kNoTriangle ? kFar : hit.t * ray.direction.z();
+        if (reached > setup.shader->lamps().height() - ray.origin.z() - kLampRoom) {
+          radiance += ray.lamp_glow;
+        }
+        floor.incoming[ray.pixel] << radiance.x(), radiance.y(), radiance.z(), 1.0F;
+        floor.weights[ray.pixel] = ray.weight;
+      } else {
+        out.pixels[ray.pixel] += ray.weight * radiance;
+      }
+    }
+  }
+}
+
+void addFloorReflections(const ReflectionBuffer& floor, int threads, Radiance& out) {
+  const int width = floor.width;
+  const int height = floor.height;
+  std::vector<Eigen::Vector4f> across(floor.incoming.size());
+  parallelFor(threads, static_cast<std::size_t>(height), [&](std::size_t y) {
+    const Eigen::Vector4f* row = floor.incoming.data() + y * width;
+    for (int x = 0; x < width; ++x) {
+      Eigen::Vector4f sum = Eigen::Vector4f::Zero();
+      for (int k = std::max(-3, -x); k <= std::min(3, width - 1 - x); ++k) {
+        sum += kTent[static_cast<std::size_t>(k + 3)] * row[x + k];
+      }
+      across[y * width + x] = sum;
+    }
+  });
+  parallelFor(threads, static_cast<std::size_t>(height), [&](std::size_t row) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < width; ++x) {
+      const std::size_t pixel = row * width + x;
+      if (floor.weights[pixel] <= 0.0F) {
+        continue;
+      }
+      Eigen::Vector4f sum = Eigen::Vector4f::Zero();
+      for (int k = std::max(-3, -y); k <= std::min(3, height - 1 - y); ++k) {
+        sum += kTent[static_cast<std::size_t>(k + 3)] *
+               across[static_cast<std::size_t>(y + k) * width + x];
+      }
+      out.pixels[pixel] += floor.weights[pixel] / sum.w() * sum.head<3>();
+    }
+  });
+}
+
+}  // namespace parkade::sim

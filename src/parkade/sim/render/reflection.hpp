@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "parkade/sim/render/frame.hpp"
+
+namespace parkade::sim {
+
+/// One mirror ray of a pixel.
+struct MirrorRay {
+  Eigen::Vector3f origin = Eigen::Vector3f::Zero();
+  Eigen::Vector3f direction = Eigen::Vector3f::UnitZ();
+  float weight = 0.0F;  ///< reflectance times the share of the pixel; 0: no ray
+  std::uint32_t pixel = 0;
+  bool from_floor = false;
+  Eigen::Vector3f lamp_glow = Eigen::Vector3f::Zero();  ///< lamps in the lobe, if in sight
+};
+
+/// What the floor mirrors, before it is averaged over neighbouring pixels.
+struct ReflectionBuffer {
+  int width = 0;
+  int height = 0;
+  std::vector<Eigen::Vector4f> incoming;  ///< radiance; w is 1 where a floor pixel sent a ray
+  std::vector<float> weights;             ///< reflectance per pixel
+  void reset(int w, int h);
+};
+
+/// The mirror ray of a surface. On floors its direction is spread over the glossy lobe by a pattern
+/// that repeats every 4 x 4 pixels: the mean over any such block is an integral over the lobe.
+MirrorRay makeMirrorRay(const LampMap& lamps, const Surface& surface,
+                        const Eigen::Vector3f& direction, float weight, int x, int y);
+
+/// Traces mirror rays; those of floors go to the buffer, others are added to the picture.
+void traceMirrorRays(const FrameSetup& setup, const MirrorRay* rays, int count, Radiance& out,
+                     ReflectionBuffer& floor);
+
+/// Averages the floor's mirror image over neighbours and adds it to the picture.
+void addFloorReflections(const ReflectionBuffer& floor, int threads, Radiance& out);
+
+}  // namespace parkade::sim

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "parkade/sim/render/lamp_map.hpp"
+#include "parkade/sim/render/light_bake.hpp"
+#include "parkade/sim/render/moment.hpp"
+#include "parkade/sim/render/texture.hpp"
+#include "parkade/sim/render/tracer.hpp"
+#include "parkade/sim/scene.hpp"
+
+namespace parkade::sim {
+
+/// Where a ray ended.
+struct SurfaceHit {
+  std::uint32_t triangle = kNoTriangle;  ///< of the static mesh, or of the object's
+  std::int32_t object = -1;              ///< index into Moment::objects; -1: static
+  float u = 0.0F;
+  float v = 0.0F;
+  float t = 0.0F;                                              ///< m
+  Eigen::Vector3f geometric_normal = Eigen::Vector3f::Zero();  ///< not unit
+};
+
+/// A material as the shading loop wants it.
+struct ShadeMaterial {
+  Eigen::Vector3f albedo = Eigen::Vector3f::Zero();
+  Eigen::Vector3f emission = Eigen::Vector3f::Zero();  ///< cd/m^2
+  float specular = 0.04F;
+  float roughness = 0.8F;
+  const MipTexture* texture = nullptr;
+  SemanticClass label = SemanticClass::kUnknown;
+  bool is_floor = false;
+};
+
+/// A surface ready for its final sum.
+struct Surface {
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();
+  Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();   ///< unit, towards the viewer
+  Eigen::Vector3f radiance = Eigen::Vector3f::Zero();  ///< diffuse and emitted, cd/m^2
+  float specular = 0.0F;
+  float roughness = 1.0F;
+  bool is_floor = false;
+};
+
+/// Reflectance of a clear coat seen at an angle: Schlick's formula, weakened by roughness at
+/// grazing angles; none for dull surfaces.
+float mirrorReflectance(float specular, float roughness, float cosine);
+
+/// The look of everything in a scene at one moment. Thread-safe.
+class Shader {
+ public:
+  Shader(const Scene& scene, const StaticTracer& tracer, const BakedLight& light);
+
+  [[nodiscard]] const ShadeMaterial& materialOf(const SurfaceHit& hit, const Moment& moment) const {
+    return materials_[triangleOf(hit, moment).material];
+  }
+  [[nodiscard]] const RenderTriangle& triangleOf(const SurfaceHit& hit,
+                                                 const Moment& moment) const {
+    return meshOf(hit, moment).triangles[hit.triangle];
+  }
+
+  /// Shades samples of one pixel that hit one surface (same material and object, like normals) as
+  /// one: light at the first hit, colour as the mean over all. spread is the angle between
+  /// neighbouring samples, samples how many the pixel has.
+  void shade(const SurfaceHit* const* hits, const Eigen::Vector3f* const* directions, int count,
+             const Eigen::Vector3f& eye, float spread, int samples, const Moment& moment,
+             Surface& out) const;
+
+  /// Class of a hit at the exact place.
+  [[nodiscard]] SemanticClass labelOf(const SurfaceHit& hit, const Eigen::Vector3f& position,
+                                      const Moment& moment) const;
+  /// Radiance of rays that leave the garage.
+  [[nodiscard]] const Eigen::Vector3f& background() const { return background_; }
+  [[nodiscard]] const Eigen::Vector3f& sky() const { return sky_; }
+  [[nodiscard]] const LampMap& lamps() const { return lamps_; }
+
+ private:
+  [[nodiscard]] const RenderMesh& meshOf(const SurfaceHit& hit, const Moment& moment) const {
+    return hit.object < 0 ? mesh_
+                          : moment.objects[static_cast<std::size_t>(hit.object)].shape->mesh;
+  }
+  [[nodiscard]] Eigen::Vector3f floorLux(float x, float y, const Moment& moment) const;
+  [[nodiscard]] Eigen::Vector3f bakedLux(const RenderTriangle& t, float u, float v,
+                                         const Moment& moment) const;
+  void shadeFloor(const SurfaceHit* const* hits, const Eigen::Vector3f* const* directions,
+                  int count, const Eigen::Vector3f& eye, float spread, int samples,
+                  const Moment& moment, Surface& out) const;
+  [[nodiscard]] float lampBrightness(const Eigen::Vector3f& p, const Moment& moment) const;
+
+  const Scene& scene_;
+  const RenderMesh& mesh_;
+  const BakedLight& light_;
+  LampMap lamps_;
+  std::vector<MipTexture> textures_;
+  std::vector<ShadeMaterial> materials_;
+  Eigen::Vector3f background_;
+  Eigen::Vector3f sky_;
+};
+
+}  // namespace parkade::sim

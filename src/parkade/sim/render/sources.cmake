@@ -1,0 +1,31 @@
+# SPDX-FileCopyrightText: 2026 The Parkade authors
+# SPDX-License-Identifier: Apache-2.0
+find_package(embree 3.13 REQUIRED GLOBAL)
+find_package(TBB REQUIRED GLOBAL)
+list(APPEND SIM_PRIVATE_DEPS embree TBB::tbb opencv_core)
+set(RENDER_SOURCES
+    render/direct_light.cpp
+    render/embree.cpp
+    render/frame.cpp
+    render/lamp_map.cpp
+    render/light_bake.cpp
+    render/light_grids.cpp
+    render/moment.cpp
+    render/overhead.cpp
+    render/parallel.cpp
+    render/ray_table.cpp
+    render/reflection.cpp
+    render/render_mesh.cpp
+    render/renderer.cpp
+    render/sensor_kernel.cpp
+    render/sensor_model.cpp
+    render/shading.cpp
+    render/texture.cpp
+    render/tracer.cpp)
+# Fused multiply-add would make pictures differ between instruction sets.
+set_source_files_properties(render/sensor_kernel.cpp PROPERTIES
+                            COMPILE_OPTIONS "-ffp-contract=off;-fno-math-errno;-fno-trapping-math")
+set(RENDER_TESTS
+    render/geometry_exactness_test.cpp
+    render/renderer_test.cpp
+    render/sensor_model_test.cpp)
