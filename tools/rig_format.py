@@ -35,21 +35,23 @@ def nearest_rotation(matrix):
     return u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt
 
 
+def rounded(matrix):
+    """To 12 decimals: the same text from every linear algebra library."""
+    return np.round(matrix, 12)
+
+
 def transform(rotation_matrix, translation):
     """4x4 from rotation and translation."""
     result = np.eye(4)
     result[:3, :3] = rotation_matrix
     result[:3, 3] = translation
-    return result
+    return rounded(result)
 
 
 def number(value):
-    """Shortest text that reads back as the value rounded to 12 decimals, or 17 digits if tiny."""
+    """The shortest text that reads back as the same number."""
     value = float(value)
-    rounded = round(value, 12) if abs(value) > 1e-6 or abs(value) < 1e-12 else value
-    if rounded == int(rounded) and abs(rounded) < 1e15:
-        return str(int(rounded))
-    return repr(rounded)
+    return str(int(value)) if value == int(value) and abs(value) < 1e15 else repr(value)
 
 
 def numbers(values):

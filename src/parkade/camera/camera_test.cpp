@@ -261,6 +261,47 @@ INSTANTIATE_TEST_SUITE_P(
                     Named{"OcamWithBackward", &ocamWithBackward, true}),
     [](const auto& test) { return std::string(test.param.name); });
 
+// Pixels that OpenCV 4.6 gives: projectPoints and fisheye::projectPoints with the same numbers.
+TEST(Camera, AgreesWithOpenCv) {
+  const Eigen::Vector3d points[] = {
+      {0.3, -0.2, 1.0}, {-0.7, 0.4, 1.1}, {1.2, 0.9, 1.0}, {-2.0, 0.3, 0.7}};
+  const struct {
+    Camera camera;
+    Eigen::Vector2d pixels[4];
+  } cases[] = {{euroc(),
+                {{499.90556853933458, 160.1887446901026},
+                 {113.52035842037048, 392.96416836918752},
+                 {772.94399379741503, 551.9563638264724},
+                 {-4595.7549492711341, 991.3653350838598}}},
+               {rational(),
+                {{783.9411637591619, 263.20372416055869},
+                 {362.73071665650815, 517.65003912426209},
+                 {1023.9193610073373, 648.09577075550305},
+                 {99.091540775004091, 440.85341174089223}}},
+               {roecs(),
+                {{733.35522303931577, 464.90140275195643},
+                 {387.43720658913264, 673.53809884903671},
+                 {922.5479093062047, 776.78000478110346},
+                 {151.71464272250091, 614.05522429758798}}}};
+  for (const auto& c : cases) {
+    for (int i = 0; i < 4; ++i) {
+      Eigen::Vector2d pixel;
+      ASSERT_TRUE(c.camera.project(points[i], pixel));
+      EXPECT_LT((pixel - c.pixels[i]).norm(), 1e-9 * c.pixels[i].norm()) << c.camera.modelName();
+    }
+  }
+}
+
+TEST(Camera, MeiWithUnitMirrorIsStereographic) {
+  const Camera camera = stereographic();
+  for (const double angle : {0.2, 1.0, 1.6, 2.5}) {
+    Eigen::Vector2d pixel;
+    ASSERT_TRUE(camera.project({0.0, 3.0 * std::sin(angle), 3.0 * std::cos(angle)}, pixel));
+    EXPECT_NEAR(pixel.y(), 540.0 + 935.307436087 * std::tan(0.5 * angle), 1e-9);
+    EXPECT_NEAR(pixel.x(), 960.0, 1e-9);
+  }
+}
+
 TEST(Camera, MeiWithoutMirrorIsThePinhole) {
   Eigen::Vector2d a;
   Eigen::Vector2d b;

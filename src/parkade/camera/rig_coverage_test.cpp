@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <numbers>
 
 #include "parkade/camera/rig.hpp"
@@ -150,6 +151,29 @@ TEST(Nuscenes6, LooksAllAroundButSeesTheGroundOnlyFromAfar) {
   ASSERT_TRUE(front.camera.project(
       front.T_vehicle_cam.inverse() * Eigen::Vector3d(1000.0, 0.016, 1.511), pixel));
   EXPECT_LT((pixel - Eigen::Vector2d(399.5, 224.5)).norm(), 1e-6);
+}
+
+TEST(RigFiles, AllAreRead) {
+  int count = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::string(PARKADE_SOURCE_DIR) + "/config/rigs")) {
+    if (entry.path().extension() != ".yaml") continue;
+    ++count;
+    const Rig rig = load(entry.path().stem().string());
+    EXPECT_EQ(rig.name, entry.path().stem().string());
+    // Every picture has a ray in its middle, and cameras of a car look out from above the ground.
+    for (const RigCamera& camera : rig.cameras) {
+      const Eigen::Vector2d middle(0.5 * (camera.camera.width() - 1),
+                                   0.5 * (camera.camera.height() - 1));
+      Eigen::Vector3d ray;
+      ASSERT_TRUE(camera.camera.unproject(middle, ray)) << rig.name << " " << camera.name;
+      if (rig.vehicle) {
+        EXPECT_GT(camera.T_vehicle_cam.translation().z(), 0.5) << rig.name << " " << camera.name;
+        EXPECT_LT((camera.T_vehicle_cam.rotation() * ray).z(), 0.1) << rig.name;
+      }
+    }
+  }
+  EXPECT_GE(count, 7);
 }
 
 TEST(SimulatorRigs, AllCamerasStandOutsideTheBody) {
