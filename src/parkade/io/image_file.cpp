@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/io/image_file.hpp"
+
+#include <fmt/core.h>
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "parkade/io/file.hpp"
+
+namespace parkade {
+namespace {
+
+using namespace std::string_view_literals;
+constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n"sv;
+constexpr std::string_view kJpegSignature = "\xFF\xD8\xFF"sv;
+constexpr std::string_view kJpegEnd = "\xFF\xD9"sv;
+
+// PNG: chunks of length, type, data, checksum (ISO/IEC 15948, 5.3) up to IEND.
+Status checkPng(std::string_view bytes) {
+  constexpr std::size_t kChunkOverhead = 12;
+  std::size_t position = kPngSignature.size();
+  while (position + kChunkOverhead <= bytes.size()) {
+    std::uint32_t length = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      length = length << 8 | static_cast<std::uint8_t>(bytes[position + i]);
+    }
+    if (bytes.substr(position + 4, 4) == "IEND") return {};
+    position += kChunkOverhead + length;
+  }
+  return Error{fmt::format("the PNG file is cut off after {} bytes", bytes.size())};
+}
+
+// JPEG: the end mark is the last thing in the file, but for zeros that some recorders pad with.
+Status checkJpeg(std::string_view bytes) {
+  while (!bytes.empty() && bytes.back() == '\0') bytes.remove_suffix(1);
+  if (bytes.size() > kJpegEnd.size() && bytes.substr(bytes.size() - kJpegEnd.size()) == kJpegEnd) {
+    return {};
+  }
+  return Error{fmt::format("the JPEG file is cut off after {} bytes", bytes.size())};
+}
+
+Error at(const std::string& path, const std::string& message) {
+  return {fmt::format("{}: {}", path, message)};
+}
+
+}  // namespace
+
+Status checkImageBytes(std::string_view bytes) {
+  if (bytes.empty()) return Error{"the file is empty"};
+  if (bytes.substr(0, kPngSignature.size()) == kPngSignature) return checkPng(bytes);
+  if (bytes.substr(0, kJpegSignature.size()) == kJpegSignature) return checkJpeg(bytes);
+  return Error{"neither a PNG nor a JPEG file"};
+}
+
+Result<cv::Mat> readImage(const std::string& path, bool gray) {
+  const Result<std::string> bytes = readFile(path);
+  if (!bytes) return bytes.error();
+  if (const Status status = checkImageBytes(*bytes); !status) {
+    return at(path, status.error().message);
+  }
+  const int flags =
+      (gray ? cv::IMREAD_GRAYSCALE : cv::IMREAD_COLOR) | cv::IMREAD_IGNORE_ORIENTATION;
+  try {
+    // A header over the bytes; imdecode only reads them.
+    const cv::Mat raw(1, static_cast<int>(bytes->size()), CV_8UC1,
+                      const_cast<char*>(bytes->data()));  // NOLINT
+    cv::Mat image = cv::imdecode(raw, flags);
+    if (image.empty()) return at(path, "the picture cannot be decoded: the file is corrupt");
+    return image;
+  } catch (const cv::Exception& error) {
+    return at(path, fmt::format("the picture cannot be decoded: {}", error.err));
+  }
+}
+
+Result<std::string> encodeImage(const cv::Mat& image, const ImageEncoding& encoding) {
+  PARKADE_CHECK(image.type() == CV_8UC1 || image.type() == CV_8UC3,
+                "expected an image of type CV_8UC1 or CV_8UC3, found {}", image.type());
+  const std::vector<int> parameters =
+      encoding.png ? std::vector<int>{cv::IMWRITE_PNG_COMPRESSION, encoding.png_level}
+                   : std::vector<int>{cv::IMWRITE_JPEG_QUALITY, encoding.jpeg_quality};
+  std::vector<std::uint8_t> bytes;
+  try {
+    if (!cv::imencode(encoding.png ? ".png" : ".jpg", image, bytes, parameters)) {
+      return Error{fmt::format("cannot encode a {} x {} picture", image.cols, image.rows)};
+    }
+  } catch (const cv::Exception& error) {
+    return Error{
+        fmt::format("cannot encode a {} x {} picture: {}", image.cols, image.rows, error.err)};
+  }
+  return std::string(bytes.begin(), bytes.end());
+}
+
+Status writeImage(const std::string& path, const cv::Mat& image, const ImageEncoding& encoding) {
+  const Result<std::string> bytes = encodeImage(image, encoding);
+  if (!bytes) return at(path, bytes.error().message);
+  return writeFileAtomic(path, *bytes);
+}
+
+}  // namespace parkade
