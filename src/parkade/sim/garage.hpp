@@ -40,6 +40,7 @@ struct Marking {
   std::string meaning;  ///< arrow: straight, left, right, straight_left, ...; limit: "10"; text
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< reference point
   double heading = 0.0;  ///< rad: the direction of travel it speaks to
+  Eigen::Vector3f colour = Eigen::Vector3f::Constant(0.75F);  ///< linear RGB reflectance, unworn
 };
 
 struct Pillar {
@@ -47,7 +48,22 @@ struct Pillar {
   Eigen::Vector2d center = Eigen::Vector2d::Zero();
   Eigen::Vector2d size = Eigen::Vector2d::Zero();  ///< m along x and y
   double height = 0.0;
+  bool round = false;     ///< size is then the diameter
   std::string zone_text;  ///< "B12", empty where unmarked
+};
+
+/// A walled block inside the outline (stairs, lifts, plant): nothing drives or parks there.
+struct Room {
+  int id = 0;
+  Eigen::Vector2d min = Eigen::Vector2d::Zero();
+  Eigen::Vector2d max = Eigen::Vector2d::Zero();
+};
+
+/// Where the ramp from outside comes in through an outer wall.
+struct Entrance {
+  Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< on the outline
+  double heading = 0.0;                              ///< rad, into the garage
+  double width = 5.5;                                ///< m
 };
 
 /// A flat sign: text on a pillar's face (zone marker), a hanging guide sign, a speed-limit sign.
@@ -83,10 +99,14 @@ struct Garage {
   std::vector<Slot> slots;
   std::vector<Marking> markings;
   std::vector<Pillar> pillars;
+  std::vector<Room> rooms;
+  std::vector<Entrance> entrances;
   std::vector<Sign> signs;
   AisleGraph aisles;
   double line_width = 0.12;
-  /// Height of the smooth floor (ramps, falls; speed bumps excluded): sum of cosine ramps.
+  /// Height of the smooth floor (ramps, falls; speed bumps excluded): a sum of ramps, each
+  /// rise * (u - sin(2 pi u) / (2 pi)) with u the share of its length, so the slope is at most
+  /// 2 * rise / length.
   struct Ramp {
     Eigen::Vector2d start = Eigen::Vector2d::Zero();
     Eigen::Vector2d direction = Eigen::Vector2d::UnitX();  ///< unit; the height changes along it
@@ -94,7 +114,8 @@ struct Garage {
     double rise = 0.0;    ///< m
   };
   std::vector<Ramp> ramps;
-  /// Speed bumps raise wheels that roll over them.
+  /// Speed bumps raise wheels that roll over them: height * (1 - s^2)^3 along the heading (s = -1
+  /// to 1 over the length), falling to the floor over the last 5 cm across.
   struct Bump {
     Eigen::Vector2d center = Eigen::Vector2d::Zero();
     double heading = 0.0;  ///< rad, direction of travel across it

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "parkade/core/options.hpp"
+#include "parkade/core/result.hpp"
+#include "parkade/sim/garage.hpp"
+
+namespace parkade::sim {
+
+struct GarageOptions {
+  std::string preset = "paper";
+  int seed = 0;
+  double occupancy = 0.6;
+
+  void visit(OptionVisitor& v) {
+    v.field("preset", preset,
+            "The garage: paper (9,000 m2, 157 slots) or random (another one for every seed).",
+            {"paper", "random"});
+    v.field("seed", seed, "",
+            "Of the layout (random), of the places of parked cars, of wear and dirt.", 0, 1e9);
+    v.field("occupancy", occupancy, "share", "Share of the slots with a parked car.", 0.0, 1.0);
+  }
+};
+
+/// Makes a garage. The same options give the same garage. Fails on an unknown preset or an
+/// occupancy outside 0 to 1.
+Result<Garage> generateGarage(const GarageOptions& options);
+
+}  // namespace parkade::sim

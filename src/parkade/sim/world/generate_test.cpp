@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/sim/world/generate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <queue>
+#include <set>
+
+#include "parkade/sim/world/polygon.hpp"
+
+namespace parkade::sim {
+namespace {
+
+Garage make(const std::string& preset, int seed, double occupancy = 0.6) {
+  GarageOptions options;
+  options.preset = preset;
+  options.seed = seed;
+  options.occupancy = occupancy;
+  return generateGarage(options).value();
+}
+
+Polygon outlineOf(const Slot& slot) {
+  return {slot.corners.begin(), slot.corners.end()};
+}
+
+Polygon box(const Eigen::Vector2d& min, const Eigen::Vector2d& max) {
+  return rectangle({}, min.x(), min.y(), max.x(), max.y());
+}
+
+/// Slots lie inside, touch no pillar, room, aisle or other slot, and carry unique numbers.
+void expectValid(const Garage& garage) {
+  ASSERT_GT(garage.slots.size(), 10U);
+  std::set<std::string> numbers;
+  for (std::size_t i = 0; i < garage.slots.size(); ++i) {
+    const Slot& slot = garage.slots[i];
+    const Polygon polygon = outlineOf(slot);
+    EXPECT_GT(signedArea(polygon), 8.0);
+    EXPECT_TRUE(numbers.insert(slot.number).second) << slot.number;
+    for (const Eigen::Vector2d& p : polygon) {
+      EXPECT_TRUE(contains(garage.outline, p)) << slot.id;
+    }
+    for (std::size_t j = i + 1; j < garage.slots.size(); ++j) {
+      EXPECT_FALSE(convexOverlap(polygon, outlineOf(garage.slots[j]), 1e-3)) << i << " " << j;
+    }
+    for (const Pillar& pillar : garage.pillars) {
+      EXPECT_FALSE(convexOverlap(
+          polygon, box(pillar.center - 0.5 * pillar.size, pillar.center + 0.5 * pillar.size), 1e-3))
+          << "slot " << slot.id << " pillar " << pillar.id;
+    }
+    for (const Room& room : garage.rooms) {
+      EXPECT_FALSE(convexOverlap(polygon, box(room.min, room.max), 1e-3)) << slot.id;
+    }
+  }
+}
+
+/// Aisles are free of slots, pillars and rooms, and every node is reached.
+void expectDrivable(const Garage& garage) {
+  const AisleGraph& graph = garage.aisles;
+  ASSERT_GE(graph.nodes.size(), 4U);
+  std::vector<std::vector<int>> next(graph.nodes.size());
+  for (const AisleGraph::Edge& edge : graph.edges) {
+    const Polygon lane = strip(graph.nodes[static_cast<std::size_t>(edge.from)],
+                               graph.nodes[static_cast<std::size_t>(edge.to)], edge.width);
+    for (const Slot& slot : garage.slots) {
+      EXPECT_FALSE(convexOverlap(lane, outlineOf(slot), 1e-3)) << slot.id;
+    }
+    for (const Pillar& pillar : garage.pillars) {
+      EXPECT_FALSE(convexOverlap(
+          lane, box(pillar.center - 0.5 * pillar.size, pillar.center + 0.5 * pillar.size), 1e-3));
+    }
+    for (const Room& room : garage.rooms) {
+      EXPECT_FALSE(convexOverlap(lane, box(room.min, room.max), 1e-3));
+    }
+    next[static_cast<std::size_t>(edge.from)].push_back(edge.to);
+    next[static_cast<std::size_t>(edge.to)].push_back(edge.from);
+  }
+  std::set<int> seen = {0};
+  std::queue<int> todo({0});
+  while (!todo.empty()) {
+    for (const int node : next[static_cast<std::size_t>(todo.front())]) {
+      if (seen.insert(node).second) todo.push(node);
+    }
+    todo.pop();
+  }
+  EXPECT_EQ(seen.size(), graph.nodes.size());
+}
+
+TEST(GenerateTest, PaperGarageHasTheSizeAndSlotsOfTheTable) {
+  const Garage garage = make("paper", 0);
+  EXPECT_EQ(garage.slots.size(), 157U);
+  EXPECT_NEAR(garage.area(), 9000.0, 180.0);
+  int types[3] = {0, 0, 0};
+  for (const Slot& slot : garage.slots) ++types[static_cast<int>(slot.type)];
+  EXPECT_GT(types[0], 100);
+  EXPECT_GE(types[1], 5);
+  EXPECT_GE(types[2], 10);
+  expectValid(garage);
+  expectDrivable(garage);
+}
+
+TEST(GenerateTest, RandomGaragesAreValid) {
+  for (int seed = 0; seed < 50; ++seed) {
+    SCOPED_TRACE(seed);
+    const Garage garage = make("random", seed);
+    EXPECT_GT(garage.area(), 1500.0);
+    EXPECT_LT(garage.area(), 12000.0);
+    expectValid(garage);
+    expectDrivable(garage);
+  }
+}
+
+TEST(GenerateTest, OccupancyIsExactToTheSlot) {
+  for (const double share : {0.0, 0.2, 0.6, 0.95, 1.0}) {
+    const Garage garage = make("paper", 3, share);
+    int occupied = 0;
+    for (const Slot& slot : garage.slots) occupied += slot.occupied ? 1 : 0;
+    EXPECT_EQ(occupied, std::lround(share * 157));
+  }
+}
+
+TEST(GenerateTest, RefusesWhatItDoesNotKnow) {
+  GarageOptions options;
+  options.preset = "castle";
+  EXPECT_NE(generateGarage(options).error().message.find("castle"), std::string::npos);
+  options = {};
+  options.occupancy = 1.5;
+  EXPECT_NE(generateGarage(options).error().message.find("1.5"), std::string::npos);
+}
+
+TEST(GarageTest, RampsAndBumpsAreSmooth) {
+  Garage garage;
+  garage.ramps.push_back({{1.0, 0.0}, Eigen::Vector2d::UnitX(), 10.0, 0.3});
+  garage.bumps.push_back({{20.0, 0.0}, 0.0, 0.35, 5.0, 0.04});
+  EXPECT_DOUBLE_EQ(garage.floorHeight({0.0, 3.0}), 0.0);
+  EXPECT_NEAR(garage.floorHeight({6.0, 3.0}), 0.15, 1e-12);
+  EXPECT_DOUBLE_EQ(garage.floorHeight({12.0, 3.0}), 0.3);
+  EXPECT_NEAR(garage.surfaceHeight({20.0, 0.0}), 0.34, 1e-12);
+  EXPECT_NEAR(garage.surfaceHeight({20.1751, 0.0}), 0.3, 1e-12);
+  constexpr double kStep = 1e-3;
+  for (double x = 0.5; x < 11.5; x += 0.05) {
+    const auto height = [&](double at) { return garage.floorHeight({at, 0.0}); };
+    const double slope = (height(x + kStep) - height(x - kStep)) / (2.0 * kStep);
+    EXPECT_LE(std::abs(slope), 2.0 * 0.3 / 10.0 + 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace parkade::sim
