@@ -1,5 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The Parkade authors
 # SPDX-License-Identifier: Apache-2.0
-set(WORLD_SOURCES garage.cpp world/generate.cpp world/grids.cpp world/layout.cpp world/polygon.cpp
-                  world/style.cpp)
-set(WORLD_TESTS world/generate_test.cpp)
+set(WORLD_SOURCES
+    garage.cpp
+    world/car_mesh.cpp
+    world/generate.cpp
+    world/grids.cpp
+    world/layout.cpp
+    world/mesh_builder.cpp
+    world/person_mesh.cpp
+    world/polygon.cpp
+    world/style.cpp)
+set(WORLD_TESTS
+    world/car_mesh_test.cpp
+    world/generate_test.cpp
+    world/person_mesh_test.cpp)
