@@ -116,6 +116,12 @@ double angle(const SO3& rotation) {
   return rotation.log().norm();
 }
 
+// The angle about z of a rotation split into one about z and one about an axis in the xy plane.
+double twistAboutZ(const SO3& rotation) {
+  const Eigen::Quaterniond& q = rotation.quaternion();
+  return wrapAngle(2.0 * std::atan2(q.z(), q.w()));
+}
+
 }  // namespace
 
 AbsoluteError absoluteError(const Trajectory& estimate, const Trajectory& reference) {
@@ -127,7 +133,7 @@ AbsoluteError absoluteError(const Trajectory& estimate, const Trajectory& refere
     error.translation.push_back((est.translation() - ref.translation()).norm());
     error.rotation_deg.push_back(kDegPerRad * angle(ref.rotation().inverse() * est.rotation()));
     error.heading_deg.push_back(kDegPerRad *
-                                std::abs(wrapAngle(est.rotation().yaw() - ref.rotation().yaw())));
+                                std::abs(twistAboutZ(est.rotation() * ref.rotation().inverse())));
   }
   return error;
 }

@@ -22,7 +22,7 @@ namespace parkade {
 struct AbsoluteError {
   std::vector<double> translation;   ///< |p_est - p_ref|, m
   std::vector<double> rotation_deg;  ///< angle of R_ref^-1 R_est, 0 to 180
-  std::vector<double> heading_deg;   ///< |difference of the yaw angles about z|, 0 to 180
+  std::vector<double> heading_deg;  ///< the part of that rotation about the reference's z, 0 to 180
 };
 AbsoluteError absoluteError(const Trajectory& estimate, const Trajectory& reference);
 

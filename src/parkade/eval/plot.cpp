@@ -96,6 +96,15 @@ const char* axisName(int coordinate) {
   return kNames[coordinate];
 }
 
+// The last two parts of a path say enough for a title.
+std::string shortName(const std::string& path) {
+  const auto last = path.find_last_of('/', path.size() > 1 ? path.size() - 2 : 0);
+  const auto before =
+      last == std::string::npos || last == 0 ? last : path.find_last_of('/', last - 1);
+  const bool is_short = before == std::string::npos || last == 0;
+  return svg::shorten(is_short ? path : path.substr(before + 1), 50);
+}
+
 Trajectory cut(const Trajectory& trajectory, TimeNs begin, TimeNs end) {
   Trajectory result;
   for (const auto& pose : trajectory) {
@@ -164,19 +173,19 @@ class Plot {
   }
 
   void header() {
-    svg_.text({28, 34},
-              fmt::format("{} against {}", svg::shorten(labels_.estimate, 60),
-                          svg::shorten(labels_.reference, 60)),
-              "title");
+    svg_.text(
+        {28, 34},
+        fmt::format("{} against {}", shortName(labels_.estimate), shortName(labels_.reference)),
+        "title");
     std::string line =
         fmt::format("APE rmse {:.4g} m, {:.4g} deg", e_.ape.rmse, e_.ape_rotation_deg.rmse);
     if (e_.rpe.count > 0) {
-      line += fmt::format("   \u2022   RPE rmse {:.4g} m over {:g} {}", e_.rpe.rmse,
-                          e_.options.rpe.delta,
-                          e_.options.rpe.unit == "f" ? "frames" : e_.options.rpe.unit);
+      line +=
+          fmt::format(" \u2022 RPE rmse {:.4g} m over {:g} {}", e_.rpe.rmse, e_.options.rpe.delta,
+                      e_.options.rpe.unit == "f" ? "frames" : e_.options.rpe.unit);
     }
-    if (e_.drift.segments > 0) line += fmt::format("   \u2022   drift {:.3g} %", e_.drift.percent);
-    line += fmt::format("   \u2022   {} poses matched, coverage {:.1f} %   \u2022   alignment {}",
+    if (e_.drift.segments > 0) line += fmt::format(" \u2022 drift {:.3g} %", e_.drift.percent);
+    line += fmt::format(" \u2022 {} poses matched, coverage {:.1f} % \u2022 alignment {}",
                         e_.pairs.size(), 100.0 * e_.pairs.coverage, e_.options.align);
     if (e_.options.align == "sim3") line += fmt::format(", scale {:.4f}", e_.alignment.scale);
     svg_.text({28, 58}, line, "s");
@@ -235,9 +244,9 @@ class Plot {
     };
     drawMap(reference_, "ref");
     drawMap(e_.estimate, "est");
-    svg_.cross(onMap(e_.pairs.estimate[worst_].T_world_body, x, y), 6, "worst");
     svg_.circle(onMap(e_.estimate.front().T_world_body, x, y), 6, "start");
     svg_.rectangle(onMap(e_.estimate.back().T_world_body, x, y) - Vector2d(5, 5), {10, 10}, "end");
+    svg_.cross(onMap(e_.pairs.estimate[worst_].T_world_body, x, y), 6, "worst");
     svg_.endClip();
     legend();
   }
@@ -284,8 +293,8 @@ class Plot {
     svg_.line({box.left, y.pixel(rmse)}, {box.right(), y.pixel(rmse)}, "rms");
     if (mark_worst) svg_.cross(point(worst_), 5, "worst");
     svg_.endClip();
-    svg_.text({box.right(), box.top - 9}, fmt::format("rmse {:.4g}   max {:.4g}", rmse, largest),
-              "mean");
+    svg_.text({box.right(), box.top - 9},
+              fmt::format("rmse {:.4g} \u2022 max {:.4g}", rmse, largest), "mean");
   }
 
   void profile() {

@@ -105,7 +105,7 @@ std::string evaluationTable(const Evaluation& e, const EvaluationLabels& labels)
                       "median", "std", "p95", "max");
   text += row("APE translation m", e.ape);
   text += row("APE rotation deg", e.ape_rotation_deg);
-  text += row("APE heading deg", e.ape_heading_deg);
+  text += row("APE about z deg", e.ape_heading_deg);
   text += row("RPE translation m", e.rpe);
   text += row("RPE rotation deg", e.rpe_rotation_deg);
   text += fmt::format("(RPE over {}: {} pairs)\n\n", deltaText(e.options.rpe), e.rpe.count);

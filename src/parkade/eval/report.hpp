@@ -16,7 +16,7 @@ struct EvaluationLabels {
   TimeNs index_step_ns = kNsPerSecond;  ///< of one pose, where by_index
 };
 
-/// The figures as JSON (docs/formats.md: metrics of a trajectory), ended by a newline. What could
+/// The figures as JSON (docs/evaluation.md, "Machine-readable"), ended by a newline. What could
 /// not be measured is null.
 std::string evaluationJson(const Evaluation& evaluation, const EvaluationLabels& labels = {});
 

@@ -122,7 +122,7 @@ Alignment alignYaw(const Points3d& source, const Points3d& target) {
     result.degeneracy = Degeneracy::kTooFewPoints;
     return result;
   }
-  // The cost is a constant - 2 (a cos(yaw) + b sin(yaw)): docs/math/alignment.md, eq. (8).
+  // docs/math/alignment.md, equations (6) and (7).
   const double a = m.covariance(0, 0) + m.covariance(1, 1);
   const double b = m.covariance(1, 0) - m.covariance(0, 1);
   double yaw = 0.0;
