@@ -22,6 +22,8 @@ constexpr double kHeight = 820.0;
 constexpr double kSimplifyPx = 0.3;
 // Below this coverage the reference is cut to the estimate's time: the estimate would be a speck.
 constexpr double kLeastCoverage = 0.2;
+// Rounding errors are not blown up to the height of the picture; m or deg.
+constexpr double kLeastErrorAxis = 1e-3;
 
 constexpr const char* kStyle =
     "text{font-family:'DejaVu Sans',Verdana,sans-serif;font-size:12px;fill:#333}\n"
@@ -94,6 +96,10 @@ View chooseView(PlotPlane plane, const Trajectory& reference) {
 const char* axisName(int coordinate) {
   constexpr const char* kNames[] = {"x", "y", "z"};
   return kNames[coordinate];
+}
+
+std::string brief(double value) {
+  return std::abs(value) < 1e-9 ? "0" : fmt::format("{:.4g}", value);
 }
 
 // The last two parts of a path say enough for a title.
@@ -178,11 +184,11 @@ class Plot {
         fmt::format("{} against {}", shortName(labels_.estimate), shortName(labels_.reference)),
         "title");
     std::string line =
-        fmt::format("APE rmse {:.4g} m, {:.4g} deg", e_.ape.rmse, e_.ape_rotation_deg.rmse);
+        fmt::format("APE rmse {} m, {} deg", brief(e_.ape.rmse), brief(e_.ape_rotation_deg.rmse));
     if (e_.rpe.count > 0) {
-      line +=
-          fmt::format(" \u2022 RPE rmse {:.4g} m over {:g} {}", e_.rpe.rmse, e_.options.rpe.delta,
-                      e_.options.rpe.unit == "f" ? "frames" : e_.options.rpe.unit);
+      line += fmt::format(" \u2022 RPE rmse {} m over {:g} {}", brief(e_.rpe.rmse),
+                          e_.options.rpe.delta,
+                          e_.options.rpe.unit == "f" ? "frames" : e_.options.rpe.unit);
     }
     if (e_.drift.segments > 0) line += fmt::format(" \u2022 drift {:.3g} %", e_.drift.percent);
     line += fmt::format(" \u2022 {} poses matched, coverage {:.1f} % \u2022 alignment {}",
@@ -279,7 +285,8 @@ class Plot {
                      double rmse, bool mark_worst) {
     const double largest = *std::max_element(errors.begin(), errors.end());
     const svg::Axis x = timeAxis(box);
-    const svg::Axis y{0.0, svg::roundUp(std::max(1.05 * largest, 1e-9)), box.bottom(), box.top};
+    const svg::Axis y{0.0, svg::roundUp(std::max(1.05 * largest, kLeastErrorAxis)), box.bottom(),
+                      box.top};
     frame(box, x, y, 6, 4);
     svg_.text({box.left, box.top - 9}, title, "head");
     const Trajectory& poses = e_.pairs.estimate;
@@ -294,7 +301,7 @@ class Plot {
     if (mark_worst) svg_.cross(point(worst_), 5, "worst");
     svg_.endClip();
     svg_.text({box.right(), box.top - 9},
-              fmt::format("rmse {:.4g} \u2022 max {:.4g}", rmse, largest), "mean");
+              fmt::format("rmse {} \u2022 max {}", brief(rmse), brief(largest)), "mean");
   }
 
   void profile() {
