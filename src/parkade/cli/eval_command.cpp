@@ -1,0 +1,220 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "parkade/cli/command.hpp"
+#include "parkade/eval/plot.hpp"
+#include "parkade/eval/report.hpp"
+#include "parkade/io/file.hpp"
+#include "parkade/io/trajectory_io.hpp"
+
+namespace parkade::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct EvalArguments {
+  std::string trajectory;
+  std::string reference;
+  std::string format = "auto";
+  std::string reference_format = "auto";
+  std::string times;
+  std::string json;
+  std::string plot;
+  std::string plane = "auto";
+  EvaluationOptions options;
+};
+
+constexpr const char* kFooter =
+    "TRAJECTORY is a file (TUM, KITTI or EuRoC csv; the first row tells which) or the folder of a\n"
+    "run (its trajectory.tum). REFERENCE is a file, or the folder of a sequence (its ground "
+    "truth)\n"
+    "or of another run. Stamps are seconds in TUM and nanoseconds in EuRoC files. KITTI files "
+    "have\n"
+    "none: two of them are matched row by row, and where one is longer its surplus is left out.\n"
+    "\n"
+    "Definitions of all figures: docs/evaluation.md.\n"
+    "\n"
+    "Examples:\n"
+    "  parkade eval OUT SEQ --json metrics.json --plot error.svg\n"
+    "  parkade eval estimate.tum groundtruth.tum --align sim3 --rpe-delta 1 --rpe-unit s";
+
+// The trajectory file that a path means.
+Result<std::string> estimateFile(const std::string& path) {
+  if (!fs::is_directory(path)) return path;
+  const std::string run = (fs::path(path) / "trajectory.tum").string();
+  if (fs::exists(run)) return run;
+  auto truth = findReference(path);
+  if (truth) return truth;
+  return Error{fmt::format(
+      "{}: the folder holds neither trajectory.tum (of a run) nor mav0 with a ground truth", path)};
+}
+
+Result<std::string> referenceFile(const std::string& path) {
+  if (path.starts_with("sim:")) {
+    return Error{fmt::format(
+        "{}: the truth of a simulated drive is read from a sequence folder: write it with 'parkade "
+        "sim --out SEQ' and give SEQ",
+        path)};
+  }
+  if (!fs::is_directory(path)) return path;
+  auto truth = findReference(path);
+  if (truth) return truth;
+  const std::string run = (fs::path(path) / "trajectory.tum").string();
+  if (fs::exists(run)) return run;
+  return truth.error();
+}
+
+Result<TrajectoryFile> read(const Result<std::string>& path, const std::string& format,
+                            const std::string& times) {
+  if (!path) return path.error();
+  TrajectoryReadOptions options;
+  options.format = trajectoryFormatFromName(format);
+  auto file = readTrajectory(*path, options);
+  if (!file || file->has_stamps || times.empty()) return file;
+  options.kitti_times_path = times;
+  return readTrajectory(*path, options);
+}
+
+Status checkClocks(const TrajectoryFile& estimate, const TrajectoryFile& reference,
+                   const EvalArguments& arguments) {
+  if (estimate.has_stamps != reference.has_stamps) {
+    return Error{fmt::format("{} has no stamps (KITTI) but {} has: give the stamps with --times",
+                             estimate.has_stamps ? arguments.reference : arguments.trajectory,
+                             estimate.has_stamps ? arguments.trajectory : arguments.reference)};
+  }
+  if (!estimate.has_stamps && arguments.options.rpe.unit == "s") {
+    return Error{
+        "an RPE over seconds needs stamps, and KITTI files have none: give them with --times, or "
+        "use --rpe-unit f"};
+  }
+  return {};
+}
+
+Status evaluateFiles(const EvalArguments& arguments) {
+  const auto estimate = read(estimateFile(arguments.trajectory), arguments.format, arguments.times);
+  if (!estimate) return estimate.error();
+  const auto reference =
+      read(referenceFile(arguments.reference), arguments.reference_format, arguments.times);
+  if (!reference) return reference.error();
+  if (auto status = checkClocks(*estimate, *reference, arguments); !status) return status;
+
+  auto evaluation = evaluate(estimate->poses, reference->poses, arguments.options);
+  if (!evaluation) {
+    return Error{fmt::format("{} against {}: {}", arguments.trajectory, arguments.reference,
+                             evaluation.error().message)};
+  }
+  EvaluationLabels labels{arguments.trajectory, arguments.reference, !estimate->has_stamps};
+  if (labels.by_index && estimate->poses.size() != reference->poses.size()) {
+    evaluation->notes.insert(
+        evaluation->notes.begin(),
+        fmt::format("the files have no stamps and differ in length ({} and {} poses): row i was "
+                    "matched with row i, the surplus left out",
+                    estimate->poses.size(), reference->poses.size()));
+  }
+  if (!arguments.json.empty()) {
+    auto status = writeFileAtomic(arguments.json, evaluationJson(*evaluation, labels));
+    if (!status) return status;
+  }
+  if (!arguments.plot.empty()) {
+    const PlotPlane plane = arguments.plane == "xy"   ? PlotPlane::kXy
+                            : arguments.plane == "xz" ? PlotPlane::kXz
+                            : arguments.plane == "yz" ? PlotPlane::kYz
+                                                      : PlotPlane::kAuto;
+    auto status = writeFileAtomic(arguments.plot,
+                                  evaluationSvg(*evaluation, reference->poses, labels, plane));
+    if (!status) return status;
+  }
+  fmt::print("{}", evaluationTable(*evaluation, labels));
+  return {};
+}
+
+}  // namespace
+
+void addEvalCommand(CLI::App& app, int& exit_code) {
+  auto* command = app.add_subcommand("eval", "Judge a trajectory by a reference: APE, RPE, drift");
+  const auto a = std::make_shared<EvalArguments>();
+  const std::vector<std::string> formats = {"auto", "tum", "kitti", "euroc"};
+  command->add_option("TRAJECTORY", a->trajectory, "Trajectory file or run folder")->required();
+  command->add_option("REFERENCE", a->reference, "Reference file, sequence or run folder")
+      ->required();
+
+  AssociationOptions& association = a->options.association;
+  command
+      ->add_option("--tolerance", association.tolerance_s,
+                   "Largest difference of two stamps that match, s")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str()
+      ->group("Matching");
+  command
+      ->add_flag("--interpolate", association.interpolate,
+                 "Interpolate the reference at the trajectory's stamps")
+      ->group("Matching");
+  command->add_option("--offset", association.offset_s, "Added to the trajectory's stamps, s")
+      ->capture_default_str()
+      ->group("Matching");
+  command
+      ->add_option("--max-gap", association.max_gap_s,
+                   "A longer pause (and than 3 median steps) is a hole: not covered, not "
+                   "interpolated across, s")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str()
+      ->group("Matching");
+  command->add_option("--format", a->format, "Format of TRAJECTORY")
+      ->check(CLI::IsMember(formats))
+      ->capture_default_str()
+      ->group("Matching");
+  command->add_option("--reference-format", a->reference_format, "Format of REFERENCE")
+      ->check(CLI::IsMember(formats))
+      ->capture_default_str()
+      ->group("Matching");
+  command->add_option("--times", a->times, "Stamps of KITTI files: seconds, one a line")
+      ->group("Matching");
+
+  command
+      ->add_option("--align", a->options.align,
+                   "Alignment before measuring: se3 (rigid), sim3 (and scale), yaw (heading "
+                   "about z and position), origin (first poses joined), none")
+      ->check(CLI::IsMember({"se3", "sim3", "yaw", "origin", "none"}))
+      ->capture_default_str()
+      ->group("Measuring");
+  command->add_option("--rpe-delta", a->options.rpe.delta, "Distance of the RPE's pairs")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->group("Measuring");
+  command
+      ->add_option("--rpe-unit", a->options.rpe.unit,
+                   "Unit of --rpe-delta: m (path), s, f (frames)")
+      ->check(CLI::IsMember({"m", "s", "f"}))
+      ->capture_default_str()
+      ->group("Measuring");
+  command
+      ->add_flag("--rpe-all-pairs", a->options.rpe.all_pairs,
+                 "Pairs from every pose on, not only one after the other")
+      ->group("Measuring");
+
+  command->add_option("--json", a->json, "Write the figures to this file")->group("Output");
+  command->add_option("--plot", a->plot, "Draw trajectories and errors to this SVG file")
+      ->group("Output");
+  command->add_option("--plane", a->plane, "Plane of the plot's top view")
+      ->check(CLI::IsMember({"auto", "xy", "xz", "yz"}))
+      ->capture_default_str()
+      ->group("Output");
+  command->footer(kFooter);
+  command->callback([a, &exit_code] {
+    if (a->options.rpe.unit == "f" && a->options.rpe.delta != std::floor(a->options.rpe.delta)) {
+      throw CLI::ValidationError("--rpe-delta",
+                                 fmt::format("{} frames: a whole number", a->options.rpe.delta));
+    }
+    const Status status = evaluateFiles(*a);
+    if (!status) exit_code = fail(status.error());
+  });
+}
+
+}  // namespace parkade::cli
