@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "parkade/core/result.hpp"
+#include "parkade/sim/drive/simulation.hpp"
+#include "parkade/types/sensor_source.hpp"
+
+namespace parkade::sim {
+
+/// Draws the frame set of an index, from 0; called in ascending order from one thread.
+using FrameFunction = std::function<Result<FrameSet>(int index)>;
+
+/// A drive as a stream of measurements: inertial samples, wheels, pictures, in the order of time.
+/// Pictures are drawn ahead in the background, a few at a time. The same simulation gives the same
+/// bytes for any number of threads.
+class SimSource : public SensorSource {
+ public:
+  /// Without a frame function no pictures come. `ahead`: frame sets that wait drawn, at most.
+  SimSource(std::shared_ptr<const Simulation> simulation, FrameFunction draw, int ahead = 3);
+  ~SimSource() override;
+  SimSource(const SimSource&) = delete;
+  SimSource& operator=(const SimSource&) = delete;
+
+  [[nodiscard]] const SensorSourceInfo& info() const override { return info_; }
+  Result<std::optional<SensorEvent>> next() override;
+  [[nodiscard]] const Simulation& simulation() const { return *simulation_; }
+
+ private:
+  class Ahead;  // the background thread and its queue
+
+  std::shared_ptr<const Simulation> simulation_;
+  SensorSourceInfo info_;
+  std::unique_ptr<Ahead> ahead_;
+  std::size_t next_imu_ = 0;
+  std::size_t next_wheel_ = 0;
+  std::size_t next_frame_ = 0;
+};
+
+}  // namespace parkade::sim
