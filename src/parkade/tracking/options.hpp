@@ -37,7 +37,7 @@ struct FlowOptions {
   double min_correlation = 0.75;
   double max_refine_px = 1.5;
   double max_scale = 1.6;
-  double affine_sigma = 0.03;
+  double affine_sigma = 0.01;
   double max_gap_s = 0.35;
   double sigma_floor_px = 0.25;
   void visit(OptionVisitor& v) {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kWindowSigma = 5.0;     // px, of the Gaussian weight over the patch
 constexpr double kMinVariance = 4.0;     // grey^2, flatter patches hold nothing to align
-constexpr double kConvergedPx = 0.01;    // step at which the alignment stops
+constexpr double kConvergedPx = 0.015;   // step at which the alignment stops
 constexpr double kMaxStepPx = 3.0;       // a larger step is a failure
 constexpr double kMinNoiseGrey = 1.0;    // an 8-bit camera is not quieter than this
 constexpr double kPriorNoiseGrey = 4.0;  // grey levels, for the weight of the shape's prior

@@ -201,11 +201,14 @@ void Tracker::Impl::match(bool only_new, const MotionPrior& prior) {
 }
 
 void Tracker::Impl::commit(const std::vector<Search>& searches) {
-  constexpr double kSamePx = 3.0;  // two features nearer than this are one corner
+  constexpr double kSamePx = 3.0;     // two features nearer than this are one corner
+  constexpr double kMostShare = 1.3;  // of the features aimed at, with those matched from others
+  const auto most = static_cast<std::size_t>(kMostShare * options_.detection.features);
   for (const Search& search : searches) {
     if (!search.match) continue;
     const FeatureView* view = camera(search.pair->from).find(search.id);
     CameraTracker& target = camera(search.pair->to);
+    if (target.views().size() >= most) continue;
     // An earlier match may have taken the feature's place or given it a view there.
     if (view == nullptr || target.find(search.id) != nullptr) continue;
     const double reach = std::max(kSamePx, 0.5 * options_.detection.min_distance_px);
@@ -228,6 +231,13 @@ void Tracker::Impl::detect() {
   forEach(static_cast<int>(cameras.size()),
           [&](int c) { corners[static_cast<std::size_t>(c)] = camera(c).detect(); });
   for (std::size_t c = 0; c < cameras.size(); ++c) {
+    // Features wander, so that some cells hold several: fill the empty ones with the best corners
+    // only as far as the number aimed at.
+    const auto room = static_cast<std::size_t>(
+        std::max(0, options_.detection.features - static_cast<int>(cameras[c].views().size())));
+    std::stable_sort(corners[c].begin(), corners[c].end(),
+                     [](const Corner& x, const Corner& y) { return x.gradient > y.gradient; });
+    if (corners[c].size() > room) corners[c].resize(room);
     for (const Corner& corner : corners[c]) {
       if (!cameras[c].add(next_id_, corner.pixel)) continue;
       ++next_id_;
