@@ -12,7 +12,9 @@
 #include <system_error>
 #include <utility>
 
+#include "parkade/camera/calibration_yaml.hpp"
 #include "parkade/core/log.hpp"
+#include "parkade/core/yaml.hpp"
 #include "parkade/io/csv.hpp"
 #include "parkade/io/file.hpp"
 #include "parkade/io/sequence_files.hpp"
@@ -257,6 +259,26 @@ Result<std::string> findReference(const std::string& path) {
   return Error{fmt::format(
       "{}: no reference: expected mav0/state_groundtruth_estimate0/data.csv (or mocap0, vicon0)",
       path)};
+}
+
+Result<TrajectoryFile> readReference(const std::string& path,
+                                     const TrajectoryReadOptions& options) {
+  const Result<std::string> data = findReference(path);
+  if (!data) return data.error();
+  Result<TrajectoryFile> file = readTrajectory(*data, options);
+  const auto sensor = std::filesystem::path(*data).parent_path() / "sensor.yaml";
+  std::error_code code;
+  if (!file || file->format != TrajectoryFormat::kEuroc ||
+      !std::filesystem::is_regular_file(sensor, code)) {
+    return file;
+  }
+  const auto T_body_sensor = parseYamlFile<SE3>(sensor.string(), [](const YamlNode& root) {
+    return root.has("T_BS") ? readTransform(root.at("T_BS")) : SE3();
+  });
+  if (!T_body_sensor) return T_body_sensor.error();
+  const SE3 T_sensor_body = T_body_sensor->inverse();
+  for (StampedPose& pose : file->poses) pose.T_world_body = pose.T_world_body * T_sensor_body;
+  return file;
 }
 
 }  // namespace parkade

@@ -48,4 +48,10 @@ Status writeTrajectory(const std::string& path, const Trajectory& poses, Traject
 /// else vicon0. A path that is a file is given back as it is. Fails where there is none.
 Result<std::string> findReference(const std::string& path);
 
+/// Reads the reference that a path means (findReference) as poses of the body: where a sensor.yaml
+/// lies beside an EuRoC file, its T_BS tells what the poses were measured at (a mocap marker), and
+/// T_world_body = T_world_sensor * T_BS^-1.
+Result<TrajectoryFile> readReference(const std::string& path,
+                                     const TrajectoryReadOptions& options = {});
+
 }  // namespace parkade

@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "parkade/core/random.hpp"
 #include "parkade/io/test_support.hpp"
 
@@ -168,6 +170,27 @@ TEST(TrajectoryIo, SaysWhereItLookedForAReference) {
   folder.write("mav0/imu0/data.csv", "");
   EXPECT_THAT(findReference(folder.path()).error().message,
               HasSubstr("state_groundtruth_estimate0"));
+}
+
+TEST(TrajectoryIo, ReferenceMeasuredAtAMarkerIsCarriedToTheBody) {
+  const TemporaryFolder folder;
+  const Trajectory body = randomTrajectory();
+  const SE3 T_body_sensor(SO3::fromYawPitchRoll(0.0, 0.0, std::acos(0.0)), {0.3, -0.1, 0.7});
+  Trajectory sensor = body;
+  for (auto& pose : sensor) pose.T_world_body = pose.T_world_body * T_body_sensor;
+  const std::string data = folder.write("mav0/mocap0/data.csv", "");
+  ASSERT_TRUE(writeTrajectory(data, sensor, TrajectoryFormat::kEuroc).ok());
+  // Without a sensor.yaml the poses are taken as the body's.
+  EXPECT_LT(largestDifference(readReference(folder.path())->poses, sensor), 1e-14);
+  folder.write("mav0/mocap0/sensor.yaml",
+               "sensor_type: pose\nT_BS:\n  cols: 4\n  rows: 4\n  data: "
+               "[1, 0, 0, 0.3,  0, 0, -1, -0.1,  0, 1, 0, 0.7,  "
+               "0, 0, 0, 1]\n");
+  EXPECT_LT(largestDifference(readReference(folder.path())->poses, body), 1e-14);
+  EXPECT_LT(largestDifference(readReference(data)->poses, body), 1e-14);
+  folder.write("mav0/mocap0/sensor.yaml", "T_BS: [1, 2]\n");
+  EXPECT_THAT(readReference(folder.path()).error().message, HasSubstr("sensor.yaml"));
+  EXPECT_FALSE(readReference(folder.path("absent")).ok());
 }
 
 }  // namespace
