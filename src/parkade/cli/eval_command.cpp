@@ -45,41 +45,44 @@ constexpr const char* kFooter =
     "  parkade eval OUT SEQ --json metrics.json --plot error.svg\n"
     "  parkade eval estimate.tum groundtruth.tum --align sim3 --rpe-delta 1 --rpe-unit s";
 
-// The trajectory file that a path means.
-Result<std::string> estimateFile(const std::string& path) {
-  if (!fs::is_directory(path)) return path;
-  const std::string run = (fs::path(path) / "trajectory.tum").string();
-  if (fs::exists(run)) return run;
-  auto truth = findReference(path);
-  if (truth) return truth;
-  return Error{fmt::format(
-      "{}: the folder holds neither trajectory.tum (of a run) nor mav0 with a ground truth", path)};
+// A run's trajectory, where the path is a run's folder.
+std::optional<std::string> runTrajectory(const std::string& path) {
+  const fs::path file = fs::path(path) / "trajectory.tum";
+  return fs::is_regular_file(file) ? std::optional(file.string()) : std::nullopt;
 }
 
-Result<std::string> referenceFile(const std::string& path) {
+// A file, or a sequence folder (its ground truth), from the path that the user gave.
+Result<std::string> estimatePath(const std::string& path) {
+  if (const auto run = runTrajectory(path)) return *run;
+  if (fs::is_directory(path) && !findReference(path)) {
+    return Error{fmt::format(
+        "{}: the folder holds neither trajectory.tum (of a run) nor mav0 with a ground truth",
+        path)};
+  }
+  return path;
+}
+
+Result<std::string> referencePath(const std::string& path) {
   if (path.starts_with("sim:")) {
     return Error{fmt::format(
         "{}: the truth of a simulated drive is read from a sequence folder: write it with 'parkade "
         "sim --out SEQ' and give SEQ",
         path)};
   }
-  if (!fs::is_directory(path)) return path;
-  auto truth = findReference(path);
-  if (truth) return truth;
-  const std::string run = (fs::path(path) / "trajectory.tum").string();
-  if (fs::exists(run)) return run;
-  return truth.error();
+  const auto run = runTrajectory(path);
+  return run && !findReference(path) ? *run : path;
 }
 
 Result<TrajectoryFile> read(const Result<std::string>& path, const std::string& format,
                             const std::string& times) {
   if (!path) return path.error();
+  if (!fs::exists(*path)) return Error{fmt::format("{}: no such file or folder", *path)};
   TrajectoryReadOptions options;
   options.format = trajectoryFormatFromName(format);
-  auto file = readTrajectory(*path, options);
+  auto file = readReference(*path, options);
   if (!file || file->has_stamps || times.empty()) return file;
   options.kitti_times_path = times;
-  return readTrajectory(*path, options);
+  return readReference(*path, options);
 }
 
 Status checkClocks(const TrajectoryFile& estimate, const TrajectoryFile& reference,
@@ -98,10 +101,10 @@ Status checkClocks(const TrajectoryFile& estimate, const TrajectoryFile& referen
 }
 
 Status evaluateFiles(const EvalArguments& arguments) {
-  const auto estimate = read(estimateFile(arguments.trajectory), arguments.format, arguments.times);
+  const auto estimate = read(estimatePath(arguments.trajectory), arguments.format, arguments.times);
   if (!estimate) return estimate.error();
   const auto reference =
-      read(referenceFile(arguments.reference), arguments.reference_format, arguments.times);
+      read(referencePath(arguments.reference), arguments.reference_format, arguments.times);
   if (!reference) return reference.error();
   if (auto status = checkClocks(*estimate, *reference, arguments); !status) return status;
 
