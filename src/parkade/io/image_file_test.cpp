@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/io/image_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+
+#include "parkade/io/test_support.hpp"
+
+namespace parkade {
+namespace {
+
+using test::TemporaryFolder;
+using testing::AllOf;
+using testing::HasSubstr;
+
+cv::Mat noise(int type) {
+  cv::Mat image(48, 64, type);
+  cv::RNG random(7);
+  random.fill(image, cv::RNG::UNIFORM, 0, 256);
+  return image;
+}
+
+TEST(ImageFile, PngKeepsEveryPixel) {
+  const TemporaryFolder folder;
+  for (const int type : {CV_8UC1, CV_8UC3}) {
+    const cv::Mat image = noise(type);
+    ASSERT_TRUE(writeImage(folder.path("a.png"), image, {true, 92, 3}).ok());
+    const auto read = readImage(folder.path("a.png"), type == CV_8UC1);
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    ASSERT_EQ(read->type(), type);
+    EXPECT_EQ(cv::norm(*read, image, cv::NORM_INF), 0.0);
+  }
+}
+
+TEST(ImageFile, GrayAndColourAreAsAsked) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(writeImage(folder.path("a.jpg"), noise(CV_8UC3), {}).ok());
+  EXPECT_EQ(readImage(folder.path("a.jpg"), true)->type(), CV_8UC1);
+  EXPECT_EQ(readImage(folder.path("a.jpg"), false)->type(), CV_8UC3);
+  ASSERT_TRUE(writeImage(folder.path("b.png"), noise(CV_8UC1), {true, 92, 3}).ok());
+  EXPECT_EQ(readImage(folder.path("b.png"), false)->type(), CV_8UC3);
+}
+
+TEST(ImageFile, FindsEveryCutOffFile) {
+  const TemporaryFolder folder;
+  for (const bool png : {false, true}) {
+    const std::string whole = *encodeImage(noise(CV_8UC3), {png, 92, 3});
+    ASSERT_TRUE(checkImageBytes(whole).ok());
+    for (std::size_t size = 0; size < whole.size(); size += 1 + size / 7) {
+      EXPECT_FALSE(checkImageBytes(whole.substr(0, size)).ok()) << png << " " << size;
+    }
+    const std::string path = folder.write("cut", whole.substr(0, whole.size() - 2));
+    const auto read = readImage(path, true);
+    ASSERT_FALSE(read.ok());
+    EXPECT_THAT(read.error().message, AllOf(HasSubstr(path), HasSubstr("is cut off after")));
+    // Recorders that preallocate leave zeros behind the end.
+    EXPECT_TRUE(checkImageBytes(whole + std::string(100, '\0')).ok());
+  }
+}
+
+TEST(ImageFile, FindsDamagedPngAndForeignFiles) {
+  const TemporaryFolder folder;
+  std::string bytes = *encodeImage(noise(CV_8UC1), {true, 92, 3});
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x55);
+  EXPECT_THAT(readImage(folder.write("a.png", bytes), true).error().message,
+              HasSubstr("a.png: the picture cannot be decoded"));
+  EXPECT_THAT(readImage(folder.write("b.png", "GIF89a"), true).error().message,
+              HasSubstr("neither a PNG nor a JPEG"));
+  EXPECT_THAT(readImage(folder.write("c.png", ""), true).error().message, HasSubstr("is empty"));
+  EXPECT_THAT(readImage(folder.path("d.png"), true).error().message, HasSubstr("cannot open"));
+}
+
+TEST(ImageFile, LeavesNothingBehindWhereItCannotWrite) {
+  const auto status = writeImage("/nowhere/a.png", noise(CV_8UC1), {});
+  ASSERT_FALSE(status.ok());
+  EXPECT_THAT(status.error().message, HasSubstr("/nowhere/a.png: cannot write"));
+}
+
+}  // namespace
+}  // namespace parkade
