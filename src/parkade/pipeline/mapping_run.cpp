@@ -1,0 +1,250 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/pipeline/mapping_run.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <future>
+#include <opencv2/core/utility.hpp>
+#include <optional>
+#include <utility>
+
+#include "parkade/core/check.hpp"
+#include "parkade/pipeline/thread_pool.hpp"
+#include "parkade/tracking/overlap.hpp"
+
+namespace parkade {
+namespace {
+
+using Clock = BusyTime::Clock;
+
+double millisecondsBetween(Clock::time_point begin, Clock::time_point end) {
+  return std::chrono::duration<double, std::milli>(end - begin).count();
+}
+
+// A frame set with the readings that came since the one before (and the first one after it).
+struct Packet {
+  std::vector<ImuSample> imu;
+  std::vector<WheelSample> wheel;
+  FrameSet frames;
+  Clock::time_point arrived;
+};
+
+}  // namespace
+
+class MappingRun::Impl {
+ public:
+  Impl(const Rig& rig, const PipelineOptions& options, int threads)
+      : tracker(rig, options.tracking), estimator_(rig, options.vio), pool_(threads - 1) {
+    tracker.setParallel([this](int count, const std::function<void(int)>& body) {
+      pool_.parallelFor(count, body);
+    });
+    summary.images.assign(rig.cameras.size(), 0);
+  }
+
+  Status run(SensorSource& source, const ProgressCallback& progress);
+  [[nodiscard]] const VioEstimator& estimator() const { return estimator_; }
+
+  Tracker tracker;
+  std::vector<PipelineObserver*> observers;
+  RunSummary summary;
+  Trajectory trajectory;
+
+ private:
+  // The estimator's part of one frame set; runs beside the tracking of the next.
+  struct Estimation {
+    Packet packet;
+    TrackSet tracks;
+    MotionPredictor state;  // after it
+    std::future<void> done;
+    Clock::time_point begin;
+    Clock::time_point end;
+  };
+
+  void process(Packet packet);
+  void finishEstimation();
+  void estimate(Estimation& work);
+  MotionPrior predict(const Packet& packet);
+  void summarise(Clock::time_point begin);
+
+  VioEstimator estimator_;
+  MotionPredictor state_;            // after the last frame set that finishEstimation() saw
+  std::vector<ImuSample> last_imu_;  // of the last packet, which that state does not know
+  std::optional<TimeNs> last_t_ns_;
+  TimeNs first_t_ns_ = 0;
+  std::int64_t observations_ = 0;
+  std::unique_ptr<Estimation> running_;
+  StageClock read_clock_{"read"};
+  StageClock track_clock_{"track"};
+  StageClock estimate_clock_{"estimate"};
+  StageClock latency_clock_{"latency"};
+  BusyTime busy_;
+  ThreadPool pool_;  // last: its threads use what is above
+};
+
+MotionPrior MappingRun::Impl::predict(const Packet& packet) {
+  if (!last_t_ns_) return {};
+  // Always the state two frame sets back (the estimation of the last one may still run), so that
+  // the prior does not depend on who is faster.
+  for (const ImuSample& sample : last_imu_) state_.addImu(sample);
+  for (const ImuSample& sample : packet.imu) state_.addImu(sample);
+  return state_.predict(*last_t_ns_, std::max(*last_t_ns_, packet.frames.t_ns));
+}
+
+void MappingRun::Impl::process(Packet packet) {
+  const MotionPrior prior = predict(packet);
+  const Clock::time_point begin = Clock::now();
+  TrackSet tracks = tracker.track(packet.frames, prior);
+  const Clock::time_point end = Clock::now();
+  track_clock_.add(millisecondsBetween(begin, end));
+  observations_ += static_cast<std::int64_t>(tracks.observations.size());
+  for (std::size_t c = 0; c < tracks.camera_ok.size(); ++c)
+    summary.images[c] += tracks.camera_ok[c];
+  for (PipelineObserver* observer : observers) {
+    observer->onTracks({packet.frames, prior, tracks, tracker.report()});
+  }
+  finishEstimation();
+  busy_.add(begin, end);
+  last_t_ns_ = packet.frames.t_ns;
+  last_imu_ = packet.imu;
+  packet.frames.images.clear();
+  running_ = std::make_unique<Estimation>();
+  running_->packet = std::move(packet);
+  running_->tracks = std::move(tracks);
+  running_->done = pool_.submit([this, work = running_.get()] { estimate(*work); });
+}
+
+void MappingRun::Impl::estimate(Estimation& work) {
+  work.begin = Clock::now();
+  for (const ImuSample& sample : work.packet.imu) estimator_.addImu(sample);
+  for (const WheelSample& sample : work.packet.wheel) estimator_.addWheel(sample);
+  const PoseEstimate estimate = estimator_.addTracks(work.tracks);
+  work.state = estimator_.predictor();
+  if (estimate.health != Health::kInitialising) {
+    trajectory.push_back({estimate.t_ns, estimate.T_odom_vehicle});
+  }
+  work.end = Clock::now();
+  for (PipelineObserver* observer : observers) {
+    observer->onPose({work.packet.frames.index, static_cast<int>(work.tracks.observations.size()),
+                      estimate, estimator_.statistics()});
+  }
+}
+
+void MappingRun::Impl::finishEstimation() {
+  if (running_ == nullptr) return;
+  running_->done.get();
+  estimate_clock_.add(millisecondsBetween(running_->begin, running_->end));
+  latency_clock_.add(millisecondsBetween(running_->packet.arrived, running_->end));
+  busy_.add(running_->begin, running_->end);
+  state_ = std::move(running_->state);
+  running_.reset();
+}
+
+Status MappingRun::Impl::run(SensorSource& source, const ProgressCallback& progress) {
+  const Clock::time_point begin = Clock::now();
+  const SensorSourceInfo& info = source.info();
+  std::optional<Packet> waiting;  // a frame set that waits for its next IMU reading
+  Packet gathering;
+  double read_ms = 0.0;
+  Status status;
+  const auto dispatch = [&] {
+    if (!waiting) return;
+    if (summary.frame_sets == 0) first_t_ns_ = waiting->frames.t_ns;
+    summary.recorded_s = toSeconds(waiting->frames.t_ns - first_t_ns_);
+    ++summary.frame_sets;
+    read_clock_.add(read_ms);
+    read_ms = 0.0;
+    const TimeNs t_ns = waiting->frames.t_ns;
+    process(std::move(*waiting));
+    waiting.reset();
+    if (progress && info.end_ns > info.start_ns) {
+      progress(std::clamp(toSeconds(t_ns - info.start_ns) / toSeconds(info.end_ns - info.start_ns),
+                          0.0, 1.0));
+    }
+  };
+  while (true) {
+    const Clock::time_point asked = Clock::now();
+    Result<std::optional<SensorEvent>> event = source.next();
+    const double waited = millisecondsBetween(asked, Clock::now());
+    read_ms += waited;
+    summary.reading_s += 1e-3 * waited;
+    if (!event) {
+      status = event.error();
+      break;
+    }
+    if (!event->has_value()) break;
+    if (const auto* imu = std::get_if<ImuSample>(&**event)) {
+      (waiting ? waiting->imu : gathering.imu).push_back(*imu);
+      if (waiting && imu->t_ns >= waiting->frames.t_ns) dispatch();
+    } else if (const auto* wheel = std::get_if<WheelSample>(&**event)) {
+      // Between a frame set and the reading that it waits for, only what is not later belongs to
+      // it.
+      const bool belongs = waiting && wheel->t_ns <= waiting->frames.t_ns;
+      (belongs ? waiting->wheel : gathering.wheel).push_back(*wheel);
+    } else {
+      dispatch();  // the IMU is silent: the frame set before goes on without the reading after it
+      waiting = std::exchange(gathering, Packet{});
+      waiting->frames = std::get<FrameSet>(std::move(**event));
+      waiting->arrived = Clock::now();
+    }
+  }
+  dispatch();
+  finishEstimation();
+  summarise(begin);
+  return status;
+}
+
+void MappingRun::Impl::summarise(Clock::time_point begin) {
+  summary.poses = static_cast<int>(trajectory.size());
+  summary.processing_s = busy_.seconds();
+  summary.wall_s = 1e-3 * millisecondsBetween(begin, Clock::now());
+  summary.mean_tracks =
+      summary.frame_sets > 0 ? static_cast<double>(observations_) / summary.frame_sets : 0.0;
+  summary.stages = {read_clock_.timing(), track_clock_.timing(), estimate_clock_.timing(),
+                    latency_clock_.timing()};
+}
+
+MappingRun::MappingRun(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+MappingRun::~MappingRun() = default;
+
+Result<std::unique_ptr<MappingRun>> MappingRun::create(const Rig& rig,
+                                                       const PipelineOptions& options,
+                                                       int threads) {
+  PARKADE_CHECK(threads >= 1, "{} threads", threads);
+  const Result<std::vector<cv::Mat>> masks = readBodyMasks(rig);
+  if (!masks) return masks.error();
+  // OpenCV must not start threads of its own beside ours.
+  cv::setNumThreads(1);
+  auto impl = std::make_unique<Impl>(rig, options, threads);
+  for (std::size_t c = 0; c < masks->size(); ++c) {
+    if (!(*masks)[c].empty()) impl->tracker.setMask(static_cast<int>(c), (*masks)[c]);
+  }
+  return std::unique_ptr<MappingRun>(new MappingRun(std::move(impl)));
+}
+
+void MappingRun::addObserver(PipelineObserver* observer) {
+  impl_->observers.push_back(observer);
+}
+
+Status MappingRun::run(SensorSource& source, const ProgressCallback& progress) {
+  return impl_->run(source, progress);
+}
+
+const RunSummary& MappingRun::summary() const {
+  return impl_->summary;
+}
+
+const Trajectory& MappingRun::trajectory() const {
+  return impl_->trajectory;
+}
+
+Trajectory MappingRun::finalTrajectory() const {
+  return impl_->estimator().finalTrajectory();
+}
+
+std::vector<Landmark> MappingRun::landmarks() const {
+  return impl_->estimator().landmarks();
+}
+
+}  // namespace parkade

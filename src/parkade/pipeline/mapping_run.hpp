@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "parkade/camera/rig.hpp"
+#include "parkade/core/options.hpp"
+#include "parkade/core/progress.hpp"
+#include "parkade/core/result.hpp"
+#include "parkade/pipeline/stage_clock.hpp"
+#include "parkade/tracking/options.hpp"
+#include "parkade/tracking/tracker.hpp"
+#include "parkade/types/pose_estimate.hpp"
+#include "parkade/types/sensor_source.hpp"
+#include "parkade/types/trajectory.hpp"
+#include "parkade/vio/estimator.hpp"
+
+namespace parkade {
+
+struct PipelineOptions {
+  TrackingOptions tracking;
+  VioOptions vio;
+  void visit(OptionVisitor& v) {
+    v.group("tracking", tracking);
+    v.group("vio", vio);
+  }
+};
+
+/// What the front end made of one frame set.
+struct TracksEvent {
+  const FrameSet& frames;
+  const MotionPrior& prior;
+  const TrackSet& tracks;
+  const TrackingReport& report;
+};
+
+/// What the estimator made of it.
+struct PoseEvent {
+  int index = 0;  ///< of the frame set
+  int num_tracks = 0;
+  const PoseEstimate& estimate;  ///< no pose yet while the health is kInitialising
+  const VioStatistics& statistics;
+};
+
+/// Looks on while a run goes. The frame sets come in their order to each of the two; with two
+/// threads or more, onPose comes from another thread than onTracks.
+class PipelineObserver {
+ public:
+  virtual ~PipelineObserver() = default;
+  virtual void onTracks(const TracksEvent&) {}
+  virtual void onPose(const PoseEvent&) {}
+};
+
+/// What a run did, apart from its poses.
+struct RunSummary {
+  int frame_sets = 0;
+  int poses = 0;
+  double recorded_s = 0.0;    ///< between the first and the last frame set
+  double processing_s = 0.0;  ///< wall time in which tracking or estimation was at work
+  double reading_s = 0.0;     ///< wall time spent waiting for the source
+  double wall_s = 0.0;
+  double mean_tracks = 0.0;         ///< observations per frame set
+  std::vector<StageTiming> stages;  ///< read, track, estimate, latency (frame set to pose)
+  std::vector<int> images;          ///< usable images per camera
+};
+
+/// The mapping run: source -> tracker -> estimator. The only owner of threads: tracking of frame
+/// set k runs beside the estimation of k - 1, and cameras are shared out to threads that are idle.
+///
+/// The tracker's prior always comes from the state after frame set k - 2 and the IMU readings
+/// since, whether k - 1 is done or not: the same input gives the same poses on any number of
+/// threads. At most two frame sets are held. A frame set is processed when the first IMU reading
+/// after it has come, so that the readings can be interpolated at its instant.
+class MappingRun {
+ public:
+  /// Fails where the rig names a mask that cannot be read.
+  static Result<std::unique_ptr<MappingRun>> create(const Rig& rig, const PipelineOptions& options,
+                                                    int threads);
+  ~MappingRun();
+
+  /// Not owned; must live as long as run() does.
+  void addObserver(PipelineObserver* observer);
+
+  /// Reads the source to its end. An Error of the source ends the run; what was done until then
+  /// stays in summary(), trajectory() and finalTrajectory().
+  Status run(SensorSource& source, const ProgressCallback& progress = {});
+
+  [[nodiscard]] const RunSummary& summary() const;
+  /// The poses as they were known at their frame sets.
+  [[nodiscard]] const Trajectory& trajectory() const;
+  /// The same instants, estimated with all that came after.
+  [[nodiscard]] Trajectory finalTrajectory() const;
+  [[nodiscard]] std::vector<Landmark> landmarks() const;
+
+ private:
+  class Impl;
+  explicit MappingRun(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace parkade
