@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "parkade/camera/rig.hpp"
+#include "parkade/core/result.hpp"
+#include "parkade/types/sensor_source.hpp"
+
+namespace parkade::cli {
+
+/// What a command may ask of its input.
+struct SourceRequest {
+  std::string spec;     ///< a sequence folder, or sim:GARAGE/ROUTE
+  std::string cameras;  ///< cam0,cam1; empty: all
+  double start_s = 0.0;
+  double duration_s = 0.0;  ///< 0: to the end
+  bool tolerate_stamps = false;
+  bool gray = true;
+  int decode_threads = 1;
+};
+
+/// An input with its calibration.
+struct OpenedSource {
+  Rig rig;
+  std::unique_ptr<SensorSource> source;
+};
+
+/// Opens a sequence folder or the simulator: from here on nobody can tell which.
+Result<OpenedSource> openSource(const SourceRequest& request);
+
+}  // namespace parkade::cli

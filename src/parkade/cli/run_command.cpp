@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "parkade/cli/command.hpp"
+#include "parkade/cli/open_source.hpp"
+#include "parkade/cli/run_outputs.hpp"
+#include "parkade/core/options.hpp"
+#include "parkade/core/progress.hpp"
+#include "parkade/io/file.hpp"
+#include "parkade/pipeline/mapping_run.hpp"
+
+namespace parkade::cli {
+namespace {
+
+struct RunArguments {
+  SourceRequest source;
+  std::string out;
+  std::string method = "vis";
+  std::string config;
+  std::vector<std::string> assignments;
+  std::string debug_images;
+  bool with_final = false;
+  bool force = false;
+  int threads = 2;
+};
+
+constexpr const char* kFooter =
+    "SEQ is a sequence folder (docs/formats.md). OUT then holds trajectory.tum (one pose per "
+    "frame\n"
+    "set from the start on, as known at its instant), trajectory_vio.tum, health.csv, "
+    "timing.json,\n"
+    "metrics.json and config.yaml; with --final also trajectory_final.tum.\n"
+    "\n"
+    "'parkade run --help-options' lists every option that --set and --config take.\n"
+    "\n"
+    "Examples:\n"
+    "  parkade run SEQ --out OUT\n"
+    "  parkade run SEQ --out OUT --cameras cam0 --set vio.window.keyframes=8 --final\n"
+    "  parkade run SEQ --out OUT --duration 5 --debug-images OUT/tracks";
+
+Status configure(const RunArguments& arguments, PipelineOptions& options) {
+  if (!arguments.config.empty()) {
+    Status status = loadOptions(asOptions(options), arguments.config);
+    if (!status) return status;
+  }
+  for (const std::string& assignment : arguments.assignments) {
+    Status status = setOption(asOptions(options), assignment);
+    if (!status) return status;
+  }
+  return {};
+}
+
+Status runSequence(const RunArguments& arguments) {
+  if (arguments.method != "vis") {
+    return Error{fmt::format("--method {}: not available yet in this build; use --method vis",
+                             arguments.method)};
+  }
+  PipelineOptions options;
+  if (Status status = configure(arguments, options); !status) return status;
+  SourceRequest request = arguments.source;
+  request.decode_threads = arguments.threads > 1 ? 1 : 0;
+  Result<OpenedSource> opened = openSource(request);
+  if (!opened) return opened.error();
+  if (Status status = prepareRunFolder(arguments.out, arguments.force); !status) return status;
+  auto run = MappingRun::create(opened->rig, options, arguments.threads);
+  if (!run) return run.error();
+
+  HealthLog health;
+  (*run)->addObserver(&health);
+  std::optional<DebugImages> images;
+  if (!arguments.debug_images.empty()) {
+    images.emplace(arguments.debug_images, opened->rig);
+    (*run)->addObserver(&*images);
+  }
+  ProgressPrinter progress("run");
+  const Status outcome = (*run)->run(*opened->source, progress.callback());
+  progress.finish();
+
+  RunDescription description;
+  description.source = arguments.source.spec;
+  description.cameras = arguments.source.cameras;
+  description.method = arguments.method;
+  description.config = dumpOptions(asOptions(options));
+  description.threads = arguments.threads;
+  Status written = writeRunFiles(arguments.out, description, **run, health, arguments.with_final);
+  if (!written) return written;
+  const RunSummary& summary = (*run)->summary();
+  fmt::print("{}", timingTable(summary));
+  fmt::print("{} frame sets, {} poses, {:.0f} tracks per frame set; wrote {}\n", summary.frame_sets,
+             summary.poses, summary.mean_tracks, arguments.out);
+  if (!outcome) {
+    return Error{fmt::format("{} (the poses up to there are in {})", outcome.error().message,
+                             arguments.out)};
+  }
+  if (images && !images->status()) return images->status();
+  if (summary.poses == 0) {
+    return Error{fmt::format("{}: no pose: the estimator did not start; see the reasons in {}",
+                             arguments.source.spec, joinPath(arguments.out, "health.csv"))};
+  }
+  return {};
+}
+
+}  // namespace
+
+void addRunCommand(CLI::App& app, int& exit_code) {
+  auto* command = app.add_subcommand("run", "Localise and map: read a sequence, write a run");
+  const auto a = std::make_shared<RunArguments>();
+  command->add_option("SEQ", a->source.spec, "Sequence folder, or sim:GARAGE/ROUTE")->required();
+  command->add_option("-o,--out", a->out, "Folder to write, made where it is not there")
+      ->required();
+  command
+      ->add_option("--method", a->method,
+                   "fused (key points and semantics), semantic, vis (key points only), avp-slam")
+      ->check(CLI::IsMember({"fused", "semantic", "vis", "avp-slam"}))
+      ->capture_default_str();
+  command->add_flag("--final", a->with_final,
+                    "Also write trajectory_final.tum: every pose with all that came after it");
+  command->add_flag("--force", a->force, "Write into a folder that holds something else");
+
+  command->add_option("--cameras", a->source.cameras, "Cameras to use, as cam0,cam1; default: all")
+      ->group("Input");
+  command->add_option("--start", a->source.start_s, "Skip this much of the sequence, s")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str()
+      ->group("Input");
+  command->add_option("--duration", a->source.duration_s, "Stop after this much, s; 0: at the end")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str()
+      ->group("Input");
+  command
+      ->add_flag("--tolerate-stamps", a->source.tolerate_stamps,
+                 "Repair stamps that go backwards or repeat instead of refusing the sequence")
+      ->group("Input");
+
+  command->add_option("--config", a->config, "YAML file of options, such as a run's config.yaml")
+      ->group("Options");
+  command
+      ->add_option("--set", a->assignments,
+                   "One option, as vio.window.keyframes=8; may be repeated; beats --config")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->group("Options");
+  command
+      ->add_flag_callback(
+          "--help-options",
+          [] {
+            PipelineOptions options;
+            fmt::print("Options for --set and --config: name, default, meaning [range]\n\n{}",
+                       describeOptions(asOptions(options)));
+            throw CLI::Success();
+          },
+          "List all options with their defaults and exit")
+      ->group("Options");
+
+  command
+      ->add_option("--threads", a->threads, "Threads to work on; the results do not depend on it")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str()
+      ->group("Work");
+  command
+      ->add_option("--debug-images", a->debug_images,
+                   "Draw the tracks of every frame set into this folder")
+      ->group("Work");
+  command->footer(kFooter);
+  command->callback([a, &exit_code] {
+    const Status status = runSequence(*a);
+    if (!status) exit_code = fail(status.error());
+  });
+}
+
+}  // namespace parkade::cli

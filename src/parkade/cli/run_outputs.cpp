@@ -1,0 +1,210 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/cli/run_outputs.hpp"
+
+#include <fmt/core.h>
+#include <sys/resource.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "parkade/core/log.hpp"
+#include "parkade/io/file.hpp"
+#include "parkade/io/image_file.hpp"
+#include "parkade/io/trajectory_io.hpp"
+#include "parkade/tracking/draw_tracks.hpp"
+
+namespace parkade::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<const char*, 7> kRunFiles = {
+    "trajectory.tum", "trajectory_vio.tum", "trajectory_final.tum", "health.csv",
+    "timing.json",    "metrics.json",       "config.yaml"};
+constexpr const char* kConfigHeading = "# Effective configuration of 'parkade run'";
+
+bool isRunFolder(const fs::path& folder) {
+  const Result<std::string> config = readFile((folder / "config.yaml").string());
+  return config.ok() && config->starts_with(kConfigHeading);
+}
+
+nlohmann::json timingJson(const RunSummary& summary) {
+  nlohmann::json json;
+  json["stages"] = nlohmann::json::object();
+  for (const StageTiming& stage : summary.stages) {
+    json["stages"][stage.name] = {{"mean_ms", stage.mean_ms},
+                                  {"p50_ms", stage.p50_ms},
+                                  {"p95_ms", stage.p95_ms},
+                                  {"max_ms", stage.max_ms},
+                                  {"count", stage.count}};
+  }
+  json["recorded_s"] = summary.recorded_s;
+  json["processing_s"] = summary.processing_s;
+  json["reading_s"] = summary.reading_s;
+  json["wall_s"] = summary.wall_s;
+  json["real_time_factor"] =
+      summary.recorded_s > 0.0 ? summary.processing_s / summary.recorded_s : 0.0;
+  json["peak_memory_mb"] = peakMemoryMb();
+  return json;
+}
+
+double pathLength(const Trajectory& poses) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    length +=
+        (poses[i].T_world_body.translation() - poses[i - 1].T_world_body.translation()).norm();
+  }
+  return length;
+}
+
+nlohmann::json metricsJson(const RunDescription& description, const MappingRun& run,
+                           const HealthLog& health) {
+  const RunSummary& summary = run.summary();
+  nlohmann::json json;
+  json["source"] = description.source;
+  json["method"] = description.method;
+  json["frame_sets"] = summary.frame_sets;
+  json["poses"] = summary.poses;
+  json["coverage"] =
+      summary.frame_sets > 0 ? static_cast<double>(summary.poses) / summary.frame_sets : 0.0;
+  json["path_length_m"] = pathLength(run.trajectory());
+  json["mean_tracks"] = summary.mean_tracks;
+  json["images"] = summary.images;
+  for (const Health h :
+       {Health::kInitialising, Health::kTracking, Health::kDegraded, Health::kLost}) {
+    json["health"][toString(h)] = health.frames(h);
+  }
+  const std::optional<double> start_up = health.startUpSeconds();
+  json["start_up_s"] = start_up ? nlohmann::json(*start_up) : nlohmann::json();
+  return json;
+}
+
+}  // namespace
+
+Status prepareRunFolder(const std::string& folder, bool force) {
+  std::error_code code;
+  if (fs::exists(folder, code) && !fs::is_directory(folder, code)) {
+    return Error{fmt::format("{}: is a file; --out takes a folder", folder)};
+  }
+  if (fs::is_directory(folder, code) && !fs::is_empty(folder, code) && !isRunFolder(folder) &&
+      !force) {
+    return Error{fmt::format(
+        "{}: the folder is not empty and not that of a run; take another one, or --force to write "
+        "into it all the same",
+        folder)};
+  }
+  if (Status made = makeFolders(folder); !made) return made;
+  for (const char* name : kRunFiles) fs::remove(fs::path(folder) / name, code);
+  return {};
+}
+
+HealthLog::HealthLog()
+    : text_(
+          "t,health,reason,tracks,sigma_position_m,sigma_yaw_deg,vx,vy,vz,bias_gyro_x,bias_gyro_y,"
+          "bias_gyro_z,bias_accel_x,bias_accel_y,bias_accel_z,keyframes,landmarks,standstill\n") {}
+
+void HealthLog::onPose(const PoseEvent& event) {
+  const PoseEstimate& e = event.estimate;
+  // Right perturbation: the world's vertical in the vehicle frame picks the yaw.
+  const Eigen::Vector3d up = e.T_odom_vehicle.rotation().inverse() * Eigen::Vector3d::UnitZ();
+  const double position = std::sqrt(std::max(0.0, e.covariance.topLeftCorner<3, 3>().trace()));
+  const double yaw = std::sqrt(std::max(0.0, up.dot(e.covariance.block<3, 3>(3, 3) * up)));
+  std::string reason = e.reason;
+  for (char& c : reason) {
+    if (c == ',' || c == '\n' || c == '"') c = ';';
+  }
+  text_ += fmt::format(
+      "{}.{:09d},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},"
+      "{:.6g},{},{},{}\n",
+      e.t_ns / kNsPerSecond, e.t_ns % kNsPerSecond, toString(e.health), reason, event.num_tracks,
+      position, yaw * 180.0 / M_PI, e.velocity_odom.x(), e.velocity_odom.y(), e.velocity_odom.z(),
+      e.bias_gyro.x(), e.bias_gyro.y(), e.bias_gyro.z(), e.bias_accel.x(), e.bias_accel.y(),
+      e.bias_accel.z(), event.statistics.keyframes, event.statistics.landmarks,
+      event.statistics.standstill ? 1 : 0);
+  if (frames_[0] + frames_[1] + frames_[2] + frames_[3] == 0) first_t_ns_ = e.t_ns;
+  ++frames_[static_cast<int>(e.health)];
+  if (e.health != Health::kInitialising && !first_pose_t_ns_) first_pose_t_ns_ = e.t_ns;
+}
+
+std::optional<double> HealthLog::startUpSeconds() const {
+  if (!first_pose_t_ns_) return std::nullopt;
+  return toSeconds(*first_pose_t_ns_ - first_t_ns_);
+}
+
+DebugImages::DebugImages(std::string folder, Rig rig)
+    : folder_(std::move(folder)), rig_(std::move(rig)), status_(makeFolders(folder_)) {}
+
+void DebugImages::onTracks(const TracksEvent& event) {
+  if (!status_) return;
+  const std::string caption = fmt::format(
+      "frame {}  t {}.{:03d}  {} observations  {} new  {} matched  {} lost  {} new patches  prior "
+      "{}",
+      event.frames.index, event.frames.t_ns / kNsPerSecond,
+      event.frames.t_ns % kNsPerSecond / kNsPerMs, event.tracks.observations.size(),
+      event.report.detected, event.report.matched.size(), event.report.lost.size(),
+      event.report.renewed,
+      !event.prior.valid ? "none" : (event.prior.translation_valid ? "motion" : "rotation"));
+  const cv::Mat picture =
+      drawTracks(event.frames, event.tracks, previous_, event.report, event.prior, rig_, caption);
+  ImageEncoding encoding;
+  encoding.jpeg_quality = 85;
+  status_ = writeImage(joinPath(folder_, fmt::format("{:06d}.jpg", event.frames.index)), picture,
+                       encoding);
+  previous_ = event.tracks;
+}
+
+Status writeRunFiles(const std::string& folder, const RunDescription& description,
+                     const MappingRun& run, const HealthLog& health, bool with_final) {
+  const auto path = [&](const char* name) { return joinPath(folder, name); };
+  for (const char* name : {"trajectory.tum", "trajectory_vio.tum"}) {
+    Status status = writeTrajectory(path(name), run.trajectory(), TrajectoryFormat::kTum);
+    if (!status) return status;
+  }
+  if (with_final) {
+    Status status = writeTrajectory(path("trajectory_final.tum"), run.finalTrajectory(),
+                                    TrajectoryFormat::kTum);
+    if (!status) return status;
+  }
+  const std::string config =
+      fmt::format("{}; --config reads it.\n# source: {}\n# method: {}, cameras: {}\n{}",
+                  kConfigHeading, description.source, description.method,
+                  description.cameras.empty() ? "all" : description.cameras, description.config);
+  const std::array<std::pair<const char*, std::string>, 4> files = {{
+      {"health.csv", health.text()},
+      {"timing.json", timingJson(run.summary()).dump(2) + "\n"},
+      {"metrics.json", metricsJson(description, run, health).dump(2) + "\n"},
+      {"config.yaml", config},
+  }};
+  for (const auto& [name, text] : files) {
+    Status status = writeFileAtomic(path(name), text);
+    if (!status) return status;
+  }
+  return {};
+}
+
+std::string timingTable(const RunSummary& summary) {
+  std::string text = fmt::format("{:<12}{:>10}{:>10}{:>10}{:>10}{:>8}\n", "stage", "mean ms",
+                                 "p50 ms", "p95 ms", "max ms", "count");
+  for (const StageTiming& s : summary.stages) {
+    text += fmt::format("{:<12}{:>10.2f}{:>10.2f}{:>10.2f}{:>10.2f}{:>8}\n", s.name, s.mean_ms,
+                        s.p50_ms, s.p95_ms, s.max_ms, s.count);
+  }
+  text += fmt::format(
+      "recorded {:.2f} s, processing {:.2f} s, waiting for images {:.2f} s; real-time factor "
+      "{:.3f}; peak memory {:.0f} MB\n",
+      summary.recorded_s, summary.processing_s, summary.reading_s,
+      summary.recorded_s > 0.0 ? summary.processing_s / summary.recorded_s : 0.0, peakMemoryMb());
+  return text;
+}
+
+double peakMemoryMb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+}  // namespace parkade::cli

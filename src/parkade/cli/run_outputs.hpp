@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "parkade/core/result.hpp"
+#include "parkade/pipeline/mapping_run.hpp"
+
+namespace parkade::cli {
+
+/// The folder that a run writes. A folder with something else in it is refused, unless forced; the
+/// files of an earlier run are removed first, so that none is taken for this one's.
+Status prepareRunFolder(const std::string& folder, bool force);
+
+/// Gathers one row of health.csv per frame set.
+class HealthLog : public PipelineObserver {
+ public:
+  HealthLog();
+  void onPose(const PoseEvent& event) override;
+  [[nodiscard]] const std::string& text() const { return text_; }
+  [[nodiscard]] int frames(Health health) const { return frames_[static_cast<int>(health)]; }
+  /// Seconds from the first frame set to the first pose; nothing where there is none.
+  [[nodiscard]] std::optional<double> startUpSeconds() const;
+
+ private:
+  std::string text_;
+  int frames_[4] = {};
+  TimeNs first_t_ns_ = 0;
+  std::optional<TimeNs> first_pose_t_ns_;
+};
+
+/// Draws every frame set's tracks into a folder, as NNNNNN.jpg.
+class DebugImages : public PipelineObserver {
+ public:
+  DebugImages(std::string folder, Rig rig);
+  void onTracks(const TracksEvent& event) override;
+  [[nodiscard]] const Status& status() const { return status_; }
+
+ private:
+  std::string folder_;
+  Rig rig_;
+  TrackSet previous_;
+  Status status_;
+};
+
+/// What the files tell besides the run itself.
+struct RunDescription {
+  std::string source;
+  std::string cameras;
+  std::string method;
+  std::string config;  ///< effective configuration, YAML
+  int threads = 1;
+};
+
+/// Writes trajectory*.tum, health.csv, timing.json, metrics.json and config.yaml, each whole or not
+/// at all.
+Status writeRunFiles(const std::string& folder, const RunDescription& description,
+                     const MappingRun& run, const HealthLog& health, bool with_final);
+
+/// The table of stage timings, as printed at the end.
+std::string timingTable(const RunSummary& summary);
+
+/// Largest memory that this process held so far, MB.
+double peakMemoryMb();
+
+}  // namespace parkade::cli
