@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/sim/world/noise_texture.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "parkade/core/check.hpp"
+#include "parkade/core/random.hpp"
+
+namespace parkade::sim {
+namespace {
+
+constexpr float kScale = 127.0F;
+
+// Without SSE 4.1, std::floor is a call; this is two instructions. For |x| < 2^31.
+int floorToInt(float x) {
+  const int truncated = static_cast<int>(x);
+  return truncated - (x < static_cast<float>(truncated) ? 1 : 0);
+}
+
+float smooth(float t) {
+  return t * t * (3.0F - 2.0F * t);
+}
+
+}  // namespace
+
+GreyTexture::GreyTexture(const std::vector<float>& values, int width, int height, bool repeats)
+    : repeats_(repeats) {
+  PARKADE_CHECK(values.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
+                "{} values for {} x {}", values.size(), width, height);
+  Level base{width, height, {}};
+  base.texels.reserve(values.size());
+  for (const float value : values) {
+    base.texels.push_back(
+        static_cast<std::int8_t>(std::lround(kScale * std::clamp(value, -1.0F, 1.0F))));
+  }
+  levels_.push_back(std::move(base));
+  while (levels_.back().width >= 4 && levels_.back().height >= 4) {
+    const Level& fine = levels_.back();
+    Level coarse{fine.width / 2, fine.height / 2, {}};
+    for (int y = 0; y < coarse.height; ++y) {
+      for (int x = 0; x < coarse.width; ++x) {
+        const std::int8_t* row = &fine.texels[static_cast<std::size_t>(2 * y * fine.width + 2 * x)];
+        const int sum = row[0] + row[1] + row[fine.width] + row[fine.width + 1];
+        coarse.texels.push_back(
+            static_cast<std::int8_t>(std::lround(0.25F * static_cast<float>(sum))));
+      }
+    }
+    levels_.push_back(std::move(coarse));
+  }
+}
+
+float GreyTexture::sample(float u, float v, float footprint) const {
+  std::size_t index = 0;
+  float scale = 1.0F;
+  for (float texel = 1.4142F; texel < footprint && index + 1 < levels_.size(); texel *= 2.0F) {
+    ++index;
+    scale *= 0.5F;
+  }
+  const Level& level = levels_[index];
+  const float x = u * scale - 0.5F;
+  const float y = v * scale - 0.5F;
+  const int x0 = floorToInt(x);
+  const int y0 = floorToInt(y);
+  const auto place = [&](int at, int size) {
+    return repeats_ ? at & (size - 1) : std::clamp(at, 0, size - 1);
+  };
+  const int ax = place(x0, level.width);
+  const int bx = place(x0 + 1, level.width);
+  const std::int8_t* row_a = &level.texels[static_cast<std::size_t>(place(y0, level.height)) *
+                                           static_cast<std::size_t>(level.width)];
+  const std::int8_t* row_b = &level.texels[static_cast<std::size_t>(place(y0 + 1, level.height)) *
+                                           static_cast<std::size_t>(level.width)];
+  const float fx = x - static_cast<float>(x0);
+  const float fy = y - static_cast<float>(y0);
+  const float a = static_cast<float>(row_a[ax]) * (1.0F - fx) + static_cast<float>(row_a[bx]) * fx;
+  const float b = static_cast<float>(row_b[ax]) * (1.0F - fx) + static_cast<float>(row_b[bx]) * fx;
+  return (a * (1.0F - fy) + b * fy) / kScale;
+}
+
+std::vector<float> fractalNoise(int size, int coarsest, double roughness, std::uint64_t seed) {
+  PARKADE_CHECK(size > 0 && (size & (size - 1)) == 0 && (coarsest & (coarsest - 1)) == 0,
+                "noise of {} texels with waves of {}", size, coarsest);
+  std::vector<float> values(static_cast<std::size_t>(size) * static_cast<std::size_t>(size), 0.0F);
+  double amplitude = 1.0;
+  double power = 0.0;
+  std::uint64_t octave = 0;
+  for (int wave = coarsest; wave >= 1; wave /= 2, amplitude *= roughness, ++octave) {
+    const int lattice = size / wave;
+    const auto at = [&](int x, int y) {
+      const auto key = static_cast<std::uint64_t>((y % lattice) * lattice + x % lattice);
+      const std::uint64_t bits = hash64(hash64(seed, octave), key);
+      return static_cast<float>(bits >> 40) * 0x1.0p-23F - 1.0F;
+    };
+    for (int y = 0; y < size; ++y) {
+      const float fy = smooth(static_cast<float>(y % wave) / static_cast<float>(wave));
+      for (int x = 0; x < size; ++x) {
+        const float fx = smooth(static_cast<float>(x % wave) / static_cast<float>(wave));
+        const int lx = x / wave;
+        const int ly = y / wave;
+        const float top = at(lx, ly) * (1.0F - fx) + at(lx + 1, ly) * fx;
+        const float low = at(lx, ly + 1) * (1.0F - fx) + at(lx + 1, ly + 1) * fx;
+        values[static_cast<std::size_t>(y) * static_cast<std::size_t>(size) +
+               static_cast<std::size_t>(x)] +=
+            static_cast<float>(amplitude) * (top * (1.0F - fy) + low * fy);
+      }
+    }
+    power += amplitude * amplitude / 3.0;
+  }
+  // Two standard deviations span -1 to 1.
+  const auto scale = static_cast<float>(0.5 / std::sqrt(0.6 * power));
+  for (float& value : values) value *= scale;
+  return values;
+}
+
+}  // namespace parkade::sim
