@@ -7,6 +7,7 @@
 
 #include "parkade/core/random.hpp"
 #include "parkade/sim/world/layout.hpp"
+#include "parkade/sim/world/paint.hpp"
 #include "parkade/sim/world/style.hpp"
 
 namespace parkade::sim {
@@ -26,6 +27,33 @@ void numberSlots(Garage& garage) {
   for (Slot& slot : garage.slots) slot.number = std::to_string(slot.id);
 }
 
+/// Falls and ramps of a few percent; the ceiling stays level above the highest floor.
+void tiltFloor(bool paper, Random random, Garage& garage) {
+  const Eigen::Vector2d size = garage.max - garage.min;
+  if (paper) {
+    garage.ramps.push_back(
+        {garage.min + Eigen::Vector2d(0.55 * size.x(), 0.0), Eigen::Vector2d::UnitX(), 26.0, 0.16});
+  } else if (random.chance(0.5)) {
+    const int count = random.integer(1, 2);
+    for (int i = 0; i < count; ++i) {
+      Garage::Ramp ramp;
+      const double angle = random.integer(0, 3) * M_PI_2 + random.normal(0.0, 0.1);
+      ramp.direction = {std::cos(angle), std::sin(angle)};
+      ramp.length = random.uniform(12.0, 40.0);
+      ramp.rise = 0.5 * random.uniform(0.004, 0.04) * ramp.length;
+      ramp.start =
+          garage.min +
+          Eigen::Vector2d(random.uniform(0.2, 0.8), random.uniform(0.2, 0.8)).cwiseProduct(size) -
+          0.5 * ramp.length * ramp.direction;
+      garage.ramps.push_back(ramp);
+    }
+  }
+  for (const Garage::Ramp& ramp : garage.ramps) garage.ceiling_height += ramp.rise;
+  for (Pillar& pillar : garage.pillars) {
+    pillar.height = garage.ceiling_height - garage.floorHeight(pillar.center);
+  }
+}
+
 }  // namespace
 
 Result<Garage> generateGarage(const GarageOptions& options) {
@@ -43,8 +71,13 @@ Result<Garage> generateGarage(const GarageOptions& options) {
   garage.seed = seed;
   const LayoutGrid grid =
       options.preset == "paper" ? paperGrid() : randomGrid(style, random.fork("grid"));
-  buildFromLayout(placeLayout(grid, style), style, garage);
+  const Layout layout = placeLayout(grid, style);
+  buildFromLayout(layout, style, garage);
+  tiltFloor(options.preset == "paper", random.fork("floor"), garage);
   numberSlots(garage);
+  paintSlots(layout, style, garage);
+  paintAisles(style, random.fork("aisles"), garage);
+  placeSigns(layout, style, random.fork("signs"), garage);
   parkCars(garage, options.occupancy, random.fork("occupancy"));
   return garage;
 }

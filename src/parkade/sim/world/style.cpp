@@ -73,6 +73,12 @@ void drawPaint(GarageStyle& style, Random random) {
   style.number_height = random.chance(0.75) ? random.uniform(0.22, 0.6) : 0.0;
   style.number_depth = random.chance(0.7) ? random.uniform(0.08, 0.2) : random.uniform(0.6, 0.85);
   style.text_weight = random.uniform(0.11, 0.2);
+  style.wheel_stops = random.chance(0.8);
+  style.wheel_stop_pair = random.chance(0.4);
+  style.wheel_stop_length = random.uniform(1.5, 2.0);
+  style.crossing_share = random.uniform(0.1, 0.7);
+  style.bump_share = random.uniform(0.0, 0.7);
+  style.bump_height = random.uniform(0.03, 0.05);
   style.wear = random.uniform(0.0, 0.9);
   style.dirt = random.uniform(0.0, 1.0);
 }
@@ -134,6 +140,8 @@ void drawStructure(GarageStyle& style, Random random) {
   style.zone_faces = random.chance(0.6) ? 4 : 2;
   style.zone_scheme = random.integer(0, 3);
   style.zone_band = random.chance(0.75);
+  style.guide_share = random.uniform(0.1, 0.7);
+  style.limit_sign_share = random.uniform(0.0, 0.15);
   style.zone_share = random.chance(0.6) ? 1.0 : random.uniform(0.4, 1.0);
 }
 

@@ -46,8 +46,14 @@ struct GarageStyle {
   double number_height = 0.4;  ///< m; 0: no painted numbers
   double number_depth = 0.12;  ///< place within the slot, share of its length from the entrance
   double text_weight = 0.16;   ///< stroke width of letters, share of their height
-  double wear = 0.35;          ///< 0 fresh .. 1 nearly gone
-  double dirt = 0.4;           ///< 0 clean .. 1 filthy
+  bool wheel_stops = true;
+  bool wheel_stop_pair = false;    ///< two short ones instead of a long one
+  double wheel_stop_length = 1.7;  ///< m
+  double crossing_share = 0.5;     ///< of the aisles' ends with a pedestrian crossing
+  double bump_share = 0.35;        ///< of the long aisles' stretches with a speed bump
+  double bump_height = 0.04;       ///< m
+  double wear = 0.35;              ///< 0 fresh .. 1 nearly gone
+  double dirt = 0.4;               ///< 0 clean .. 1 filthy
 
   // Floor.
   Eigen::Vector3f slot_floor{0.30F, 0.31F, 0.31F};
@@ -72,6 +78,9 @@ struct GarageStyle {
   int zone_scheme = 0;             ///< 0 "B12", 1 "B-12", 2 "B2", 3 "12B"
   bool zone_band = true;           ///< coloured band behind the text, else on the bare pillar
   double zone_share = 1.0;         ///< of the pillars that carry a marker
+
+  double guide_share = 0.45;       ///< of the approaches to a crossing with a hanging sign
+  double limit_sign_share = 0.08;  ///< of the pillars with a speed-limit plate
 
   // Light.
   double lamp_spacing = 6.0;  ///< m along an aisle
