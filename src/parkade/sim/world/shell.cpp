@@ -184,14 +184,10 @@ void addRamp(const Garage& garage, const Entrance& entrance, const ShellMaterial
   mesh.quad(p(-kLength, half, z0 + kRise), p(-kLength, -half, z0 + kRise), p(-kFlat, -half, z0),
             p(-kFlat, half, z0), m.ramp, {4.0F, 1.5F});
   for (const double side : {1.0, -1.0}) {
-    const double y = side * half;
-    const std::array<double, 2> ends =
-        side > 0.0 ? std::array<double, 2>{-kLength, 0.0} : std::array<double, 2>{0.0, -kLength};
-    mesh.quad(p(ends[0], y, z0 - 0.1), p(ends[1], y, z0 - 0.1), p(ends[1], y, z0 + kRise + 1.0),
-              p(ends[0], y, z0 + kRise + 1.0), m.upper, {4.0F, 0.8F});
-    // Seen from inside as well as from the far wall's side: a wall has two faces.
-    mesh.quad(p(ends[1], y, z0 - 0.1), p(ends[0], y, z0 - 0.1), p(ends[0], y, z0 + kRise + 1.0),
-              p(ends[1], y, z0 + kRise + 1.0), m.upper, {4.0F, 0.8F});
+    const Eigen::Vector2d middle = at * Eigen::Vector2d(-0.5 * kLength, side * (half + 0.1));
+    mesh.box(point3(middle, z0 + 0.5 * kRise + 0.45),
+             {static_cast<float>(0.5 * kLength), 0.1F, static_cast<float>(0.5 * kRise + 0.55)},
+             m.upper, static_cast<float>(entrance.heading));
   }
 }
 
