@@ -87,7 +87,7 @@ std::string rigText(const Rig& rig) {
   const Eigen::Vector3d& p = rig.imu.T_vehicle_imu.translation();
   const Eigen::Vector3d angles = rig.imu.T_vehicle_imu.rotation().yawPitchRoll();
   text += fmt::format(
-      "  imu        {:.4g} Hz, at {:.3f} {:.3f} {:.3f} m, yaw {:.1f}, pitch {:.1f}, roll {:.1f} "
+      "  imu        {:.4g} Hz, at {:.3f} {:.3f} {:.3f} m, yaw {}, pitch {}, roll {} "
       "deg\n"
       "             noise: gyro {:.3g} rad/s/sqrt(Hz), walk {:.3g}; accel {:.3g} m/s^2/sqrt(Hz), "
       "walk {:.3g}\n",
