@@ -54,7 +54,8 @@ FrameSet renderGround(const Rig& rig, const GroundAttitude& attitude) {
         if (ray.z() > -0.01) continue;
         const Eigen::Vector3d p =
             T_ground_cam.translation() - T_ground_cam.translation().z() / ray.z() * ray;
-        image.at<std::uint8_t>(v, u) = static_cast<std::uint8_t>(std::lround(texture(p.x(), p.y())));
+        image.at<std::uint8_t>(v, u) =
+            static_cast<std::uint8_t>(std::lround(texture(p.x(), p.y())));
       }
     }
     frames.images.push_back(image);
@@ -70,7 +71,8 @@ double rmsError(const BevImage& bev, double range) {
   for (int v = 0; v < bev.image.rows; ++v) {
     for (int u = 0; u < bev.image.cols; ++u) {
       const Eigen::Vector2d p = bev.geometry.toGround(Eigen::Vector2d(u, v));
-      if (bev.valid.at<std::uint8_t>(v, u) == 0 || (p - bev.geometry.center).norm() > range) continue;
+      if (bev.valid.at<std::uint8_t>(v, u) == 0 || (p - bev.geometry.center).norm() > range)
+        continue;
       const double difference = bev.image.at<std::uint8_t>(v, u) - texture(p.x(), p.y());
       sum += difference * difference;
       ++count;

@@ -48,6 +48,9 @@ int run(int argc, char** argv) {
 #ifdef PARKADE_WITH_PIPELINE
   addRunCommand(app, exit_code);
 #endif
+#ifdef PARKADE_WITH_BEV
+  addBevCommand(app, exit_code);
+#endif
 #ifdef PARKADE_WITH_EVAL
   addEvalCommand(app, exit_code);
 #endif

@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "parkade/bev/stitcher.hpp"
+#include "parkade/cli/command.hpp"
+#include "parkade/cli/open_source.hpp"
+#include "parkade/core/progress.hpp"
+#include "parkade/io/image_file.hpp"
+
+namespace parkade::cli {
+namespace {
+
+struct BevArguments {
+  std::string source;
+  std::string out;
+  std::string rig;
+  std::vector<std::string> images;  // NAME=FILE
+  std::string cameras;
+  double start_s = 0.0;
+  double duration_s = 0.0;
+  int every = 1;
+  std::vector<std::string> settings;
+  BevOptions options;
+};
+
+constexpr const char* kFooter =
+    "SEQ is a sequence folder, or sim:GARAGE/ROUTE. The pictures are DIR/<t_ns>.png: ahead is up,\n"
+    "black is what no camera sees, and the own car. Without SEQ, single pictures of a rig:\n"
+    "--rig and one --image per camera.\n"
+    "\n"
+    "Examples:\n"
+    "  parkade bev SEQ --out DIR --every 10\n"
+    "  parkade bev SEQ --out DIR --set width_px=800 --set height_px=800 --set metres_per_px=0.02\n"
+    "  parkade bev --rig config/rigs/garage_fisheye_sim.yaml --image cam0=0.png \\\n"
+    "      --image cam1=1.png --image cam2=2.png --image cam3=3.png --out DIR";
+
+Status writeBev(const BevImage& bev, const std::string& folder) {
+  return writeImage((std::filesystem::path(folder) / fmt::format("{}.png", bev.t_ns)).string(),
+                    bev.image, {.png = true});
+}
+
+// The frame set of single pictures given as NAME=FILE.
+Result<FrameSet> readFrames(const Rig& rig, const std::vector<std::string>& images) {
+  FrameSet frames;
+  frames.images.resize(rig.cameras.size());
+  frames.image_t_ns.resize(rig.cameras.size());
+  for (const std::string& text : images) {
+    const std::size_t equals = text.find('=');
+    const int camera = equals == std::string::npos ? -1 : rig.find(text.substr(0, equals));
+    if (camera < 0) {
+      std::string known;
+      for (const RigCamera& one : rig.cameras) known += (known.empty() ? "" : ", ") + one.name;
+      return Error{fmt::format("--image {}: expected CAMERA=FILE with one of the rig's cameras: {}",
+                               text, known)};
+    }
+    Result<cv::Mat> image = readImage(text.substr(equals + 1), false);
+    if (!image) return image.error();
+    const Camera& model = rig.cameras[static_cast<std::size_t>(camera)].camera;
+    if (image->cols != model.width() || image->rows != model.height()) {
+      return Error{fmt::format("{}: the picture has {} x {} pixels, the rig's {} {} x {}",
+                               text.substr(equals + 1), image->cols, image->rows,
+                               text.substr(0, equals), model.width(), model.height())};
+    }
+    frames.images[static_cast<std::size_t>(camera)] = *image;
+  }
+  return frames;
+}
+
+Status stitchSingle(const BevArguments& arguments) {
+  const Result<Rig> rig = readRig(arguments.rig);
+  if (!rig) return rig.error();
+  const Result<FrameSet> frames = readFrames(*rig, arguments.images);
+  if (!frames) return frames.error();
+  BevStitcher stitcher(*rig, arguments.options);
+  return writeBev(stitcher.stitch(*frames), arguments.out);
+}
+
+Status stitchSequence(const BevArguments& arguments) {
+  SourceRequest request;
+  request.spec = arguments.source;
+  request.cameras = arguments.cameras;
+  request.start_s = arguments.start_s;
+  request.duration_s = arguments.duration_s;
+  request.gray = false;
+  Result<OpenedSource> opened = openSource(request);
+  if (!opened) return opened.error();
+  SensorSource& source = *opened->source;
+  BevStitcher stitcher(opened->rig, arguments.options);
+  ProgressPrinter progress("bev");
+  int written = 0;
+  while (true) {
+    Result<std::optional<SensorEvent>> event = source.next();
+    if (!event) return event.error();
+    if (!*event) break;
+    const auto* frames = std::get_if<FrameSet>(&**event);
+    if (frames == nullptr) continue;
+    const double span = toSeconds(source.info().end_ns - source.info().start_ns);
+    progress.update(toSeconds(frames->t_ns - source.info().start_ns) / std::max(span, 1e-9));
+    if (frames->index % arguments.every != 0) continue;
+    const Status status = writeBev(stitcher.stitch(*frames), arguments.out);
+    if (!status) return status;
+    ++written;
+  }
+  progress.finish();
+  fmt::print("{} pictures in {}\n", written, arguments.out);
+  return {};
+}
+
+int run(BevArguments& arguments) {
+  for (const std::string& setting : arguments.settings) {
+    const Status status = setOption(asOptions(arguments.options), setting);
+    if (!status) return fail(status.error());
+  }
+  if (arguments.source.empty() == arguments.rig.empty()) {
+    return fail({"give either a sequence, or --rig with one --image per camera"});
+  }
+  std::error_code code;
+  std::filesystem::create_directories(arguments.out, code);
+  if (code) {
+    return fail({fmt::format("{}: the folder cannot be made: {}", arguments.out, code.message())});
+  }
+  const Status status =
+      arguments.source.empty() ? stitchSingle(arguments) : stitchSequence(arguments);
+  return status ? 0 : fail(status.error());
+}
+
+}  // namespace
+
+void addBevCommand(CLI::App& app, int& exit_code) {
+  auto* command = app.add_subcommand("bev", "Stitch the cameras into bird's-eye pictures");
+  auto arguments = std::make_shared<BevArguments>();
+  command->add_option("SEQ", arguments->source, "Sequence folder, or sim:GARAGE/ROUTE");
+  command->add_option("-o,--out", arguments->out, "Folder to write, made where it is not there")
+      ->required();
+  command->add_option("--every", arguments->every, "Stitch every N-th frame set only [1]")
+      ->check(CLI::Range(1, 1000000));
+  command->add_option("--cameras", arguments->cameras,
+                      "Cameras to use, as cam0,cam1; default: all");
+  command->add_option("--start", arguments->start_s, "Skip this much of the sequence, s")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--duration", arguments->duration_s, "Stop after this much, s; 0: at the end")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--rig", arguments->rig, "rig.yaml for single pictures");
+  command->add_option("--image", arguments->images, "CAMERA=FILE, once per camera, with --rig");
+  command->add_option("--set", arguments->settings, "An option below, as metres_per_px=0.02");
+  command->footer(std::string(kFooter) + "\n\nOptions for --set (name, default, meaning):\n" +
+                  describeOptions(asOptions(arguments->options)));
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace parkade::cli
