@@ -1,0 +1,221 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <deque>
+#include <opencv2/core.hpp>
+#include <stdexcept>
+#include <thread>
+
+#include "parkade/core/random.hpp"
+#include "parkade/pipeline/mapping_run.hpp"
+#include "parkade/pipeline/stage_clock.hpp"
+#include "parkade/pipeline/thread_pool.hpp"
+
+namespace parkade {
+namespace {
+
+TEST(ThreadPool, SharesOutEveryNumberOnce) {
+  for (const int threads : {0, 1, 3}) {
+    ThreadPool pool(threads);
+    std::vector<int> done(100, 0);
+    pool.parallelFor(100, [&](int i) { ++done[static_cast<std::size_t>(i)]; });
+    EXPECT_EQ(done, std::vector<int>(100, 1)) << threads << " threads";
+  }
+}
+
+TEST(ThreadPool, LoopGoesOnBesideWorkThatTakesItsTime) {
+  ThreadPool pool(1);
+  std::atomic<bool> release{false};
+  std::future<void> slow = pool.submit([&] {
+    while (!release) std::this_thread::yield();
+  });
+  int sum = 0;  // the only thread is busy: the caller does it all
+  pool.parallelFor(10, [&](int i) { sum += i; });
+  EXPECT_EQ(sum, 45);
+  release = true;
+  slow.get();
+}
+
+TEST(ThreadPool, HandsExceptionsToTheCaller) {
+  ThreadPool pool(2);
+  EXPECT_THROW(pool.parallelFor(8,
+                                [](int i) {
+                                  if (i == 5) throw std::runtime_error("five");
+                                }),
+               std::runtime_error);
+  EXPECT_THROW(pool.submit([] { throw std::runtime_error("no"); }).get(), std::runtime_error);
+}
+
+TEST(StageClock, GivesMeanPercentilesAndMaximum) {
+  StageClock clock("stage");
+  for (int i = 1; i <= 1000; ++i) clock.add(i);
+  const StageTiming timing = clock.timing();
+  EXPECT_DOUBLE_EQ(timing.mean_ms, 500.5);
+  EXPECT_NEAR(timing.p50_ms, 500.0, 10.0);
+  EXPECT_NEAR(timing.p95_ms, 950.0, 20.0);
+  EXPECT_DOUBLE_EQ(timing.max_ms, 1000.0);
+  EXPECT_EQ(timing.count, 1000);
+  EXPECT_EQ(StageClock("none").timing().count, 0);
+}
+
+TEST(BusyTime, CountsWhatOverlapsOnce) {
+  BusyTime busy;
+  const BusyTime::Clock::time_point start = BusyTime::Clock::now();
+  const auto at = [&](int ms) { return start + std::chrono::milliseconds(ms); };
+  busy.add(at(0), at(100));
+  busy.add(at(50), at(80));
+  busy.add(at(90), at(150));
+  busy.add(at(200), at(210));
+  EXPECT_NEAR(busy.seconds(), 0.160, 1e-9);
+}
+
+// A rig of one camera in a box of random dots, driven by hand: images and exact IMU readings.
+class DotSource : public SensorSource {
+ public:
+  DotSource() {
+    PinholeRadtan::Parameters p;
+    p.fx = p.fy = 200.0;
+    p.cx = 159.5;
+    p.cy = 119.5;
+    RigCamera camera;
+    camera.name = "cam0";
+    camera.camera = Camera(PinholeRadtan(p), 320, 240);
+    // The camera looks along the vehicle's x axis.
+    Eigen::Matrix3d axes;
+    axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+    camera.T_vehicle_cam = SE3(SO3(axes), Eigen::Vector3d(0.1, 0.0, 0.0));
+    rig.name = "dots";
+    rig.cameras = {camera};
+    rig.imu.rate_hz = 200.0;
+    Random random(11);
+    for (int i = 0; i < 500; ++i) {
+      dots_.emplace_back(random.uniform(3.0, 8.0), random.uniform(-5.0, 5.0),
+                         random.uniform(-4.0, 4.0));
+      greys_.push_back(random.uniform(90.0, 255.0));
+    }
+    info_.name = "dots";
+    info_.num_cameras = 1;
+    info_.end_ns = fromSeconds(kSeconds);
+    for (int i = 0; i <= static_cast<int>(kSeconds * 200); ++i) {
+      events_.push_back(imuAt(i * 5 * kNsPerMs));
+      if (i % 20 == 0 && i > 0) events_.push_back(framesAt(i * 5 * kNsPerMs, i / 20 - 1));
+    }
+  }
+  [[nodiscard]] const SensorSourceInfo& info() const override { return info_; }
+  Result<std::optional<SensorEvent>> next() override {
+    if (next_ == fail_at) return Error{"data.csv:7: the disk is gone"};
+    if (next_ == events_.size()) return std::optional<SensorEvent>();
+    return std::optional<SensorEvent>(events_[next_++]);
+  }
+
+  Rig rig;
+  std::size_t fail_at = 1'000'000;
+  static constexpr double kSeconds = 2.5;
+
+ private:
+  static Eigen::Vector3d positionAt(double t) {
+    return {0.3 * std::sin(1.5 * t), 0.4 * std::sin(2.0 * t), 0.2 * std::sin(2.5 * t)};
+  }
+  ImuSample imuAt(TimeNs t_ns) const {
+    const double t = toSeconds(t_ns);
+    ImuSample sample;
+    sample.t_ns = t_ns;
+    sample.accel = Eigen::Vector3d(-0.3 * 2.25 * std::sin(1.5 * t), -1.6 * std::sin(2.0 * t),
+                                   -0.2 * 6.25 * std::sin(2.5 * t) + 9.81);
+    return sample;
+  }
+  FrameSet framesAt(TimeNs t_ns, int index) const {
+    cv::Mat image(240, 320, CV_8UC1, cv::Scalar(40));
+    const SE3 T_world_vehicle(SO3(), positionAt(toSeconds(t_ns)));
+    const SE3 T_cam_world = (T_world_vehicle * rig.cameras[0].T_vehicle_cam).inverse();
+    for (std::size_t i = 0; i < dots_.size(); ++i) {
+      Eigen::Vector2d p;
+      if (!rig.cameras[0].camera.project(T_cam_world * dots_[i], p)) continue;
+      // A smooth blob at its exact place.
+      for (int y = static_cast<int>(p.y()) - 5; y <= static_cast<int>(p.y()) + 6; ++y) {
+        for (int x = static_cast<int>(p.x()) - 5; x <= static_cast<int>(p.x()) + 6; ++x) {
+          if (x < 0 || y < 0 || x >= 320 || y >= 240) continue;
+          const double square = (Eigen::Vector2d(x, y) - p).squaredNorm();
+          const double grey = 40.0 + (greys_[i] - 40.0) * std::exp(-square / 6.0);
+          auto& pixel = image.at<std::uint8_t>(y, x);
+          pixel = std::max(pixel, static_cast<std::uint8_t>(grey));
+        }
+      }
+    }
+    FrameSet frames;
+    frames.t_ns = t_ns;
+    frames.index = index;
+    frames.images = {image};
+    frames.image_t_ns = {t_ns};
+    return frames;
+  }
+
+  SensorSourceInfo info_;
+  std::vector<Eigen::Vector3d> dots_;
+  std::vector<double> greys_;
+  std::vector<SensorEvent> events_;
+  std::size_t next_ = 0;
+};
+
+class Counter : public PipelineObserver {
+ public:
+  void onTracks(const TracksEvent& event) override {
+    tracks.push_back(event.frames.index);
+    priors += event.prior.valid ? 1 : 0;
+  }
+  void onPose(const PoseEvent& event) override { poses.push_back(event.index); }
+  std::vector<int> tracks;
+  std::vector<int> poses;
+  int priors = 0;
+};
+
+TEST(MappingRun, SamePosesOnAnyNumberOfThreads) {
+  Trajectory reference;
+  for (const int threads : {1, 2, 4}) {
+    DotSource source;
+    auto run = MappingRun::create(source.rig, {}, threads);
+    ASSERT_TRUE(run.ok());
+    Counter counter;
+    (*run)->addObserver(&counter);
+    ASSERT_TRUE((*run)->run(source).ok());
+    EXPECT_EQ((*run)->summary().frame_sets, 25);
+    EXPECT_EQ(counter.tracks.size(), 25U);
+    EXPECT_EQ(counter.poses, counter.tracks);
+    EXPECT_GE(counter.priors, 10);
+    EXPECT_EQ((*run)->summary().stages[1].count, 25);
+    const Trajectory& poses = (*run)->trajectory();
+    EXPECT_GT(poses.size(), 10U);
+    if (reference.empty()) reference = poses;
+    ASSERT_EQ(poses.size(), reference.size());
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      EXPECT_EQ(poses[i].t_ns, reference[i].t_ns);
+      EXPECT_EQ(poses[i].T_world_body.matrix(), reference[i].T_world_body.matrix()) << "pose " << i;
+    }
+  }
+}
+
+TEST(MappingRun, KeepsWhatItHasWhenTheSourceFails) {
+  DotSource source;
+  source.fail_at = 400;
+  auto run = MappingRun::create(source.rig, {}, 2);
+  ASSERT_TRUE(run.ok());
+  const Status status = (*run)->run(source);
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().message, "data.csv:7: the disk is gone");
+  EXPECT_GT((*run)->summary().frame_sets, 15);
+  EXPECT_GT((*run)->trajectory().size(), 5U);
+}
+
+TEST(MappingRun, RefusesAMaskThatIsMissing) {
+  DotSource source;
+  source.rig.cameras[0].mask_path = "/nonexistent/mask.png";
+  const auto run = MappingRun::create(source.rig, {}, 1);
+  ASSERT_FALSE(run.ok());
+  EXPECT_NE(run.error().message.find("/nonexistent/mask.png"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace parkade
