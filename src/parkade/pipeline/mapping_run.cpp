@@ -23,6 +23,30 @@ double millisecondsBetween(Clock::time_point begin, Clock::time_point end) {
   return std::chrono::duration<double, std::milli>(end - begin).count();
 }
 
+// The turn of the vehicle between two instants by the gyroscope alone, its bias unknown: what can
+// be said before the estimator has started.
+MotionPrior turnBetween(const std::vector<ImuSample>& readings, const SE3& T_vehicle_imu,
+                        TimeNs begin_ns, TimeNs end_ns) {
+  MotionPrior prior;
+  prior.previous_t_ns = begin_ns;
+  if (readings.size() < 2) return prior;
+  SO3 R_begin_now;
+  TimeNs covered = 0;
+  for (std::size_t i = 1; i < readings.size(); ++i) {
+    const TimeNs from = std::max(readings[i - 1].t_ns, begin_ns);
+    const TimeNs to = std::min(readings[i].t_ns, end_ns);
+    if (to <= from) continue;
+    const Eigen::Vector3d rate = 0.5 * (readings[i - 1].gyro + readings[i].gyro);
+    R_begin_now = R_begin_now * SO3::exp(rate * toSeconds(to - from));
+    covered += to - from;
+  }
+  // A gap in the readings leaves the turn unknown.
+  prior.valid = 10 * covered > 9 * (end_ns - begin_ns);
+  const SO3& R_vehicle_imu = T_vehicle_imu.rotation();
+  prior.T_previous_current.rotation() = R_vehicle_imu * R_begin_now * R_vehicle_imu.inverse();
+  return prior;
+}
+
 // A frame set with the readings that came since the one before (and the first one after it).
 struct Packet {
   std::vector<ImuSample> imu;
@@ -36,7 +60,10 @@ struct Packet {
 class MappingRun::Impl {
  public:
   Impl(const Rig& rig, const PipelineOptions& options, int threads)
-      : tracker(rig, options.tracking), estimator_(rig, options.vio), pool_(threads - 1) {
+      : tracker(rig, options.tracking),
+        estimator_(rig, options.vio),
+        T_vehicle_imu_(rig.imu.T_vehicle_imu),
+        pool_(threads - 1) {
     tracker.setParallel([this](int count, const std::function<void(int)>& body) {
       pool_.parallelFor(count, body);
     });
@@ -69,6 +96,7 @@ class MappingRun::Impl {
   void summarise(Clock::time_point begin);
 
   VioEstimator estimator_;
+  SE3 T_vehicle_imu_;
   MotionPredictor state_;            // after the last frame set that finishEstimation() saw
   std::vector<ImuSample> last_imu_;  // of the last packet, which that state does not know
   std::optional<TimeNs> last_t_ns_;
@@ -89,7 +117,11 @@ MotionPrior MappingRun::Impl::predict(const Packet& packet) {
   // the prior does not depend on who is faster.
   for (const ImuSample& sample : last_imu_) state_.addImu(sample);
   for (const ImuSample& sample : packet.imu) state_.addImu(sample);
-  return state_.predict(*last_t_ns_, std::max(*last_t_ns_, packet.frames.t_ns));
+  const TimeNs now = std::max(*last_t_ns_, packet.frames.t_ns);
+  if (state_.valid()) return state_.predict(*last_t_ns_, now);
+  std::vector<ImuSample> readings = last_imu_;
+  readings.insert(readings.end(), packet.imu.begin(), packet.imu.end());
+  return turnBetween(readings, T_vehicle_imu_, *last_t_ns_, now);
 }
 
 void MappingRun::Impl::process(Packet packet) {

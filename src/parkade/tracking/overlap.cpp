@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
 namespace parkade {
@@ -74,7 +75,10 @@ Result<std::vector<cv::Mat>> readBodyMasks(const Rig& rig) {
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
     const RigCamera& camera = rig.cameras[c];
     if (camera.mask_path.empty()) continue;
-    masks[c] = cv::imread(camera.mask_path, cv::IMREAD_GRAYSCALE);
+    // OpenCV would print about a file that is not there.
+    if (std::filesystem::exists(camera.mask_path)) {
+      masks[c] = cv::imread(camera.mask_path, cv::IMREAD_GRAYSCALE);
+    }
     if (masks[c].empty()) {
       return Error{
           fmt::format("{}: cannot read the mask of {}; give an 8-bit picture or remove "

@@ -59,7 +59,7 @@ class Tracker::Impl {
   void forEach(int count, const std::function<void(int)>& body) const;
   void checkShared();
   void match(bool only_new, const MotionPrior& prior);
-  [[nodiscard]] std::vector<Search> planSearches(bool only_new) const;
+  [[nodiscard]] std::vector<Search> planSearches(bool only_new, const MotionPrior& prior) const;
   void commit(const std::vector<Search>& searches);
   void detect();
   CameraTracker& camera(int index) { return cameras[static_cast<std::size_t>(index)]; }
@@ -153,7 +153,8 @@ void Tracker::Impl::checkShared() {
   }
 }
 
-std::vector<Tracker::Impl::Search> Tracker::Impl::planSearches(bool only_new) const {
+std::vector<Tracker::Impl::Search> Tracker::Impl::planSearches(bool only_new,
+                                                               const MotionPrior& prior) const {
   std::vector<Search> searches;
   const auto period = static_cast<std::uint64_t>(options_.matching.retry_frames);
   for (const Pair& pair : pairs_) {
@@ -162,7 +163,13 @@ std::vector<Tracker::Impl::Search> Tracker::Impl::planSearches(bool only_new) co
       const bool is_new = view.id >= first_new_id_;
       if (is_new != only_new) continue;
       if (!is_new && (frame_ + view.id) % period != 0) continue;
-      // A renewed patch belongs to one camera only.
+      // A feature that several tries did not find waits until its depth is known: the search along
+      // the whole curve costs most where there is nothing to be found.
+      constexpr int kBlindTries = 3;
+      if (view.age > kBlindTries * options_.matching.retry_frames &&
+          !(prior.translation_valid && prior.p_previous.contains(view.id))) {
+        continue;
+      }
       if (camera(pair.to).find(view.id) != nullptr) continue;
       searches.push_back({&pair, view.id, std::nullopt});
     }
@@ -172,7 +179,7 @@ std::vector<Tracker::Impl::Search> Tracker::Impl::planSearches(bool only_new) co
 
 void Tracker::Impl::match(bool only_new, const MotionPrior& prior) {
   if (pairs_.empty()) return;
-  std::vector<Search> searches = planSearches(only_new);
+  std::vector<Search> searches = planSearches(only_new, prior);
   std::vector<std::optional<SearchImage>> images(cameras.size());
   for (std::size_t c = 0; c < cameras.size(); ++c) {
     if (cameras[c].ok()) images[c] = cameras[c].searchImage();
