@@ -16,8 +16,10 @@ constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kReach = 16.0F;        // m: a lamp 2.6 m up brings 3 % of its floor light beyond
 constexpr float kCell = 4.0F;          // m
 constexpr float kUpwardShare = 0.12F;  // of the flux
-constexpr float kLampGap = 0.15F;      // m: what is this close to a lamp casts no shadow (housing)
-constexpr float kSkin = 0.01F;         // m: shadow rays start this far off the surface
+// The pool of light on the ceiling is narrower than the ceiling's cuts: it is lit from lower down.
+constexpr float kUpwardDrop = 0.6F;  // m
+constexpr float kLampGap = 0.15F;    // m: what is this close to a lamp casts no shadow (housing)
+constexpr float kSkin = 0.01F;       // m: shadow rays start this far off the surface
 
 int samplesAt(float distance) {
   return distance < 4.0F ? 4 : distance < 8.0F ? 3 : 2;
@@ -86,7 +88,10 @@ void DirectLight::addLamp(std::uint32_t index, DirectPacket& packet) const {
     for (int k = 0; k < packet.count; ++k) {
       const float jitter = uniformOf(hash64(packet.random[k], index * 8ULL + s));
       const Eigen::Vector3f p = packet.position[k] + kSkin * packet.normal[k];
-      const Eigen::Vector3f to_lamp = lamp.end_a + along * ((s + jitter) / samples) - p;
+      Eigen::Vector3f to_lamp = lamp.end_a + along * ((s + jitter) / samples) - p;
+      if (to_lamp.z() < 0.0F) {
+        to_lamp.z() -= kUpwardDrop;
+      }
       const float d2 = to_lamp.squaredNorm();
       const float d = std::sqrt(d2);
       const float cos_surface = to_lamp.dot(packet.normal[k]) / d;

@@ -32,6 +32,7 @@ class FrameTracer {
         table_(table),
         R_(T_world_cam.rotation().matrix().cast<float>()),
         eye_(T_world_cam.translation().cast<float>()),
+        floor_z_(setup.shader->floorHeight(eye_)),
         samples_(table.grid() * table.grid()) {}
 
   void traceTile(int tile, TileSamples& out) const;
@@ -39,7 +40,7 @@ class FrameTracer {
   void labelTile(int tile, const TileSamples& in, Truth& out) const;
 
  private:
-  [[nodiscard]] bool movesIn(int tile) const;
+  [[nodiscard]] RTCScene movingIn(int tile, bool mirrored) const;
   Eigen::Vector3f shadePixel(const SurfaceHit* hits, const Eigen::Vector3f* directions,
                              float spread, int x, int y, MirrorRay& mirror) const;
 
@@ -47,31 +48,30 @@ class FrameTracer {
   const RayTable& table_;
   const Eigen::Matrix3f R_;
   const Eigen::Vector3f eye_;
+  const float floor_z_;  ///< below the eye
   const int samples_;
 };
 
-/// Whether anything that moves may show in a tile.
-bool FrameTracer::movesIn(int tile) const {
-  const RayTable::Cone& cone = table_.cone(tile);
-  const Eigen::Vector3f axis = R_ * cone.axis;
-  const float angle = std::acos(std::clamp(cone.cosine, -1.0F, 1.0F));
-  for (const PlacedObject& object : setup_.moment->objects) {
-    const Eigen::Vector3f d = object.center_world - eye_;
-    const float distance = d.norm();
-    if (distance <= object.shape->radius) {
-      return true;
-    }
-    const float wide = angle + std::asin(object.shape->radius / distance);
-    if (wide > 3.1F || d.dot(axis) > distance * std::cos(wide)) {
-      return true;
-    }
+/// What moves, if any of it may show in a tile, or in the floor's mirror image there.
+RTCScene FrameTracer::movingIn(int tile, bool mirrored) const {
+  if (setup_.moment->scene == nullptr) {
+    return nullptr;
   }
-  return false;
+  constexpr float kLobe = 0.35F;  // rad: mirror rays spread around the ideal direction
+  const RayTable::Cone& cone = table_.cone(tile);
+  Eigen::Vector3f axis = R_ * cone.axis;
+  Eigen::Vector3f eye = eye_;
+  float angle = std::acos(std::clamp(cone.cosine, -1.0F, 1.0F)) + 0.01F;
+  if (mirrored) {  // the eye below the floor, looking up
+    axis.z() = -axis.z();
+    eye.z() = 2.0F * floor_z_ - eye.z();
+    angle += kLobe;
+  }
+  return setup_.moment->showsIn(eye, axis, angle) ? setup_.moment->scene.get() : nullptr;
 }
 
 void FrameTracer::traceTile(int tile, TileSamples& out) const {
-  const RTCScene moving =
-      setup_.moment->scene != nullptr && movesIn(tile) ? setup_.moment->scene.get() : nullptr;
+  const RTCScene moving = movingIn(tile, false);
   const RayTable::Packet* packets = table_.packets(tile);
   RayPacket rays;
   for (int p = 0; p < table_.packetsPerTile(); ++p) {
@@ -94,11 +94,7 @@ void FrameTracer::traceTile(int tile, TileSamples& out) const {
       traceBoth(*setup_.tracer, moving, rays, true);
     }
     for (int k = 0; k < kPacket; ++k) {
-      int x = 0;
-      int y = 0;
-      int sample = 0;
-      table_.place(p, k, x, y, sample);
-      const std::size_t i = static_cast<std::size_t>((y * kTile + x) * samples_ + sample);
+      const auto i = static_cast<std::size_t>(table_.slot(p, k));
       out.hits[i] = hitOf(*setup_.tracer, rays, k);
       if (rays.valid[k] == 0) {
         out.hits[i].t = -1.0F;  // no ray at all: black
@@ -182,7 +178,7 @@ void FrameTracer::shadeTile(int tile, const TileSamples& in, Radiance& out,
   if (mirror == nullptr) {
     return;
   }
-  traceMirrorRays(setup_, pending.data(), count, out, *mirror);
+  traceMirrorRays(setup_, movingIn(tile, true), pending.data(), count, out, *mirror);
 }
 
 void FrameTracer::labelTile(int tile, const TileSamples& in, Truth& out) const {
@@ -243,7 +239,8 @@ void traceFrame(const FrameSetup& setup, const RayTable& table, const SE3& T_wor
   out.width = table.width();
   out.height = table.height();
   out.pixels.assign(static_cast<std::size_t>(out.width) * out.height, Eigen::Vector3f::Zero());
-  ReflectionBuffer mirror;
+  thread_local ReflectionBuffer buffer;  // kept: fresh memory costs a page fault per 4 kB
+  ReflectionBuffer& mirror = buffer;
   if (setup.reflections) {
     mirror.reset(out.width, out.height);
   }

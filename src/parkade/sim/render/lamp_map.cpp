@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "parkade/sim/render/texture.hpp"
+
 namespace parkade::sim {
 namespace {
 
@@ -15,6 +17,7 @@ constexpr float kMargin = 2.0F;     // m around the lamps
 constexpr float kFarthest = 60.0F;  // m along a mirror ray
 constexpr float kLobeWidth = 2.6F;  // diameter at half height of the mirrored GGX lobe over alpha
 constexpr int kMaxTaps = 6;
+constexpr float kTail = 0.4F;
 
 }  // namespace
 
@@ -43,7 +46,7 @@ LampMap::LampMap(const Scene& scene, double scale) {
   for (const Luminaire& lamp : scene.luminaires) {
     draw(lamp, static_cast<float>(lamp.flux_lm * scale));
   }
-  while (levels_.back().nx > 2 && levels_.back().ny > 2) {
+  while (levels_.back().cell < 6.0F) {
     const Level& fine = levels_.back();
     Level level;
     level.cell = 2.0F * fine.cell;
@@ -86,26 +89,18 @@ void LampMap::draw(const Luminaire& lamp, float flux) {
 Eigen::Vector4f LampMap::at(const Level& level, float x, float y) const {
   const float fx = (x - min_.x()) / level.cell - 0.5F;
   const float fy = (y - min_.y()) / level.cell - 0.5F;
-  const float bx = std::floor(fx);
-  const float by = std::floor(fy);
-  Eigen::Vector4f sum = Eigen::Vector4f::Zero();
-  if (bx < -1.0F || by < -1.0F || bx >= static_cast<float>(level.nx) ||
-      by >= static_cast<float>(level.ny)) {
-    return sum;
+  if (fx < 0.0F || fy < 0.0F || fx >= static_cast<float>(level.nx - 1) ||
+      fy >= static_cast<float>(level.ny - 1)) {
+    return Eigen::Vector4f::Zero();  // the margin around the lamps is dark
   }
-  const int ix = static_cast<int>(bx);
-  const int iy = static_cast<int>(by);
-  const float ax = fx - bx;
-  const float ay = fy - by;
-  for (int k = 0; k < 4; ++k) {
-    const int px = ix + k % 2;
-    const int py = iy + k / 2;
-    if (px >= 0 && py >= 0 && px < level.nx && py < level.ny) {
-      sum += (k % 2 == 0 ? 1.0F - ax : ax) * (k / 2 == 0 ? 1.0F - ay : ay) *
-             level.texels[static_cast<std::size_t>(py) * level.nx + px];
-    }
-  }
-  return sum;
+  const int ix = static_cast<int>(fx);
+  const int iy = static_cast<int>(fy);
+  const float ax = fx - static_cast<float>(ix);
+  const float ay = fy - static_cast<float>(iy);
+  const Eigen::Vector4f* row = level.texels.data() + static_cast<std::size_t>(iy) * level.nx + ix;
+  const Eigen::Vector4f low = (1.0F - ax) * row[0] + ax * row[1];
+  const Eigen::Vector4f high = (1.0F - ax) * row[level.nx] + ax * row[level.nx + 1];
+  return (1.0F - ay) * low + ay * high;
 }
 
 Eigen::Vector3f LampMap::glow(const Eigen::Vector3f& p, const Eigen::Vector3f& direction,
@@ -121,10 +116,11 @@ Eigen::Vector3f LampMap::glow(const Eigen::Vector3f& p, const Eigen::Vector3f& d
   const float along = std::max(width / std::max(cosine, 0.05F), across);
   const int taps = std::min(kMaxTaps, static_cast<int>(along / across + 0.5F));
   const float print = std::max(across, along / static_cast<float>(taps));
-  const float wanted = std::log2(print / kCell);
+  const float wanted = fastLog2(print / kCell);
   const int last = static_cast<int>(levels_.size()) - 1;
   const int level = std::clamp(static_cast<int>(wanted), 0, last);
-  const float blend = std::clamp(wanted - static_cast<float>(level), 0.0F, 1.0F);
+  const float blend =
+      level < last ? std::clamp(wanted - static_cast<float>(level), 0.0F, 1.0F) : 0.0F;
   Eigen::Vector2f step = direction.head<2>();
   step *= along / (static_cast<float>(taps) * std::max(step.norm(), 1e-6F));
   const Eigen::Vector2f q = p.head<2>() + t * direction.head<2>();
@@ -133,11 +129,14 @@ Eigen::Vector3f LampMap::glow(const Eigen::Vector3f& p, const Eigen::Vector3f& d
     const float offset = static_cast<float>(k) - 0.5F * static_cast<float>(taps - 1);
     const Eigen::Vector2f place = q + offset * step;
     sum += (1.0F - blend) * at(levels_[static_cast<std::size_t>(level)], place.x(), place.y());
-    if (level < last) {
+    if (blend > 0.0F) {
       sum += blend * at(levels_[static_cast<std::size_t>(level) + 1], place.x(), place.y());
     }
   }
-  return sum.head<3>() / static_cast<float>(taps);
+  // GGX has long tails: part of the light comes from a print three times as wide.
+  const int wide = std::min(level + 2, last);
+  return (1.0F - kTail) / static_cast<float>(taps) * sum.head<3>() +
+         kTail * at(levels_[static_cast<std::size_t>(wide)], q.x(), q.y()).head<3>();
 }
 
 }  // namespace parkade::sim

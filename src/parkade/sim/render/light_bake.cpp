@@ -17,8 +17,9 @@ namespace parkade::sim {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kFar = 1.0e4F;     // m
-constexpr float kHeadroom = 2.0F;  // m: floor with less above it is not open
+constexpr float kFar = 1.0e4F;          // m
+constexpr float kProbeSpacing = 1.25F;  // m
+constexpr float kHeadroom = 2.0F;       // m: floor with less above it is not open
 constexpr std::uint32_t kFloorHit = 0x80000000U;
 constexpr int kSmoothingPasses = 2;
 
@@ -51,6 +52,14 @@ float uniformOf(std::uint64_t bits) {
   return static_cast<float>(bits >> 40U) * (1.0F / 16777216.0F);
 }
 
+/// How a triangle gets its light.
+enum class Kind : std::uint8_t {
+  kStructure,  ///< per vertex
+  kVehicle,    ///< from the probes: cars have too many vertices
+  kFloor,      ///< from the floor's map
+  kLamp,       ///< not at all
+};
+
 class Baker {
  public:
   Baker(const Scene& scene, const StaticTracer& tracer, const BakeOptions& options, int threads)
@@ -61,6 +70,11 @@ class Baker {
         direct_(scene, tracer),
         vertex_count_(tracer.mesh().positions.size()) {
     for (const Material& material : scene.materials) {
+      const unsigned mask = maskOf(material);
+      kind_of_material_.push_back(mask == kMaskFloor                          ? Kind::kFloor
+                                  : mask == kMaskLamp                         ? Kind::kLamp
+                                  : material.label == SemanticClass::kVehicle ? Kind::kVehicle
+                                                                              : Kind::kStructure);
       albedo_of_material_.push_back(meanAlbedo(scene, material));
     }
   }
@@ -68,6 +82,8 @@ class Baker {
   BakedLight bake();
 
  private:
+  [[nodiscard]] Kind kindOf(const RenderTriangle& t) const { return kind_of_material_[t.material]; }
+  void lightVehicles(BakedLight& out) const;
   void layFloor(FloorGrid& grid, float cell) const;
   /// Heights and normals of the floor at cell centres; unused where there is no floor.
   [[nodiscard]] std::vector<Place> floorPlaces(const FloorGrid& grid) const;
@@ -90,6 +106,8 @@ class Baker {
   const DirectLight direct_;
   const std::size_t vertex_count_;
   std::vector<Eigen::Vector3f> albedo_of_material_;
+  std::vector<Kind> kind_of_material_;
+  Eigen::Vector3f usual_lux_ = Eigen::Vector3f::Zero();  ///< mean direct light on the floor
   FloorGrid coarse_;
   std::vector<Place> coarse_places_;
   std::vector<Eigen::Vector3f> coarse_albedo_;
@@ -148,8 +166,7 @@ std::vector<Place> Baker::vertexPlaces() const {
   std::vector<Eigen::Vector3f> inward(vertex_count_, Eigen::Vector3f::Zero());
   std::vector<float> faces(vertex_count_, 0.0F);
   for (const RenderTriangle& t : mesh.triangles) {
-    const unsigned mask = maskOf(scene_.materials[t.material]);
-    if (mask == kMaskFloor || mask == kMaskLamp) {
+    if (kindOf(t) != Kind::kStructure) {
       continue;
     }
     const Eigen::Vector3f center =
@@ -282,6 +299,10 @@ Eigen::Vector3f Baker::bounced(const GatherHit& hit,
     return coarse_albedo_[cell].cwiseProduct(lux[vertex_count_ + cell]);
   }
   const RenderTriangle& t = tracer_.mesh().triangles[hit.target];
+  if (kindOf(t) == Kind::kVehicle) {
+    constexpr float kVehicleShare = 0.6F;  // of the floor's usual light, all sides alike
+    return kVehicleShare * albedo_of_material_[t.material].cwiseProduct(usual_lux_);
+  }
   const float u = static_cast<float>(hit.u) / 255.0F;
   const float v = static_cast<float>(hit.v) / 255.0F;
   const Eigen::Vector3f e = (1.0F - u - v) * lux[t.v[0]] + u * lux[t.v[1]] + v * lux[t.v[2]];
@@ -372,7 +393,7 @@ void Baker::bakeProbes(BakedLight& out, const std::vector<Eigen::Vector3f>& lux)
   constexpr int kLevels = ProbeGrid::kLevels;
   constexpr int kRays = 64;
   ProbeGrid& probes = out.probes;
-  layFloor(probes.plane, 2.0F);
+  layFloor(probes.plane, kProbeSpacing);
   const std::vector<Place> ground = floorPlaces(probes.plane);
   probes.faces.resize(ground.size() * kLevels);
   for (const Place& place : ground) {
@@ -469,6 +490,30 @@ void Baker::bakeProbes(BakedLight& out, const std::vector<Eigen::Vector3f>& lux)
   }
 }
 
+/// Light of vehicles' vertices from the probes around, dimmed where the vehicle hides its own
+/// surroundings.
+void Baker::lightVehicles(BakedLight& out) const {
+  const RenderMesh& mesh = tracer_.mesh();
+  std::vector<std::uint8_t> vehicle(vertex_count_, 0);
+  for (const RenderTriangle& t : mesh.triangles) {
+    if (kindOf(t) == Kind::kVehicle) {
+      for (const std::uint32_t v : t.v) {
+        vehicle[v] = 1;
+      }
+    }
+  }
+  constexpr std::size_t kChunk = 4096;
+  parallelFor(threads_, (vertex_count_ + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+    const std::size_t end = std::min((chunk + 1) * kChunk, vertex_count_);
+    for (std::size_t i = chunk * kChunk; i < end; ++i) {
+      if (vehicle[i] != 0) {
+        const auto cube = out.probes.cubeAt(mesh.positions[i]);
+        out.vertices[i].lux = ProbeGrid::evaluate(cube, mesh.normals[i]) * mesh.openness[i];
+      }
+    }
+  });
+}
+
 BakedLight Baker::bake() {
   BakedLight out;
   // 1. Places that carry light: vertices of the structure and cars, cells of the floor.
@@ -489,6 +534,15 @@ BakedLight Baker::bake() {
   // 2. Direct light.
   const std::vector<BakedPoint> direct = directAt(places, 11);
   out.floor = directAt(fine_places, 12);
+
+  std::size_t lit = 0;
+  for (std::size_t i = vertex_count_; i < places.size(); ++i) {
+    if (luminance(direct[i].lux) > 0.0F) {
+      usual_lux_ += direct[i].lux;
+      ++lit;
+    }
+  }
+  usual_lux_ /= static_cast<float>(std::max<std::size_t>(lit, 1));
 
   // 3. Bounces: E = direct + G(E), a few times over the same rays.
   std::vector<Eigen::Vector3f> lux(places.size());
@@ -519,8 +573,11 @@ BakedLight Baker::bake() {
   };
   out.vertices.assign(direct.begin(), direct.begin() + static_cast<std::ptrdiff_t>(vertex_count_));
   for (std::size_t i = 0; i < vertex_count_; ++i) {
-    join(out.vertices[i], indirect[i]);
+    if (places[i].used) {
+      join(out.vertices[i], indirect[i]);
+    }
   }
+  lightVehicles(out);
   for (std::size_t i = 0; i < out.floor.size(); ++i) {
     std::array<std::uint32_t, 4> cells;
     std::array<float, 4> weights;

@@ -3,62 +3,84 @@
 #include "parkade/sim/render/moment.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <set>
 
 #include "parkade/core/check.hpp"
+#include "parkade/sim/render/openness.hpp"
 
 namespace parkade::sim {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kOpennessRays = 32;
-constexpr float kOpennessReach = 1.2F;   // m
 constexpr float kBeamCandela = 4000.0F;  // dipped, below the cut-off
 constexpr float kBeamReach = 30.0F;      // m
 constexpr float kDarkest = 0.12F;        // light left below the middle of a car
 
-/// Share of directions around a vertex's normal that leave the object. Directions that meet the
-/// floor below the object count as hidden.
-std::vector<float> opennessOf(const ObjectMesh& shape) {
-  const RenderMesh& mesh = shape.mesh;
-  std::vector<float> out(mesh.positions.size());
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const Eigen::Vector3f n = mesh.normals[i];
-    const Eigen::Vector3f p = mesh.positions[i] + 0.01F * n;
-    int open = 0;
-    for (int begin = 0; begin < kOpennessRays; begin += kPacket) {
-      RayPacket rays;
-      rays.clear(kMaskAll);
-      bool below[kPacket];
-      for (int k = 0; k < kPacket; ++k) {
-        const int s = begin + k;
-        const float z = 1.0F - 2.0F * (s + 0.5F) / kOpennessRays;
-        const float b = 2.39996323F * s;  // golden angle
-        const float r = std::sqrt(1.0F - z * z);
-        // A point of the sphere plus the normal is distributed by the cosine to the normal.
-        Eigen::Vector3f d = n + 0.999F * Eigen::Vector3f(r * std::cos(b), r * std::sin(b), z);
-        d.normalize();
-        rays.set(k, p, d, kOpennessReach);
-        const Eigen::Vector3f ground = p + d * (d.z() < -1e-3F ? p.z() / -d.z() : 0.0F);
-        below[k] = d.z() < -1e-3F && ground.x() > shape.box_min.x() &&
-                   ground.x() < shape.box_max.x() && ground.y() > shape.box_min.y() &&
-                   ground.y() < shape.box_max.y();
-      }
-      RTCIntersectContext context;
-      rtcInitIntersectContext(&context);
-      rtcOccluded16(rays.valid, shape.scene.get(), &context, &rays.rays.ray);
-      for (int k = 0; k < kPacket; ++k) {
-        open += !below[k] && rays.rays.ray.tfar[k] >= 0.0F ? 1 : 0;
+bool inCone(const Eigen::Vector3f& center, float radius, const Eigen::Vector3f& eye,
+            const Eigen::Vector3f& axis, float half_angle) {
+  const Eigen::Vector3f d = center - eye;
+  const float distance = d.norm();
+  if (distance <= radius) {
+    return true;
+  }
+  const float wide = half_angle + std::asin(radius / distance);
+  return wide > 3.1F || d.dot(axis) > distance * std::cos(wide);
+}
+
+/// Spheres around the cells of a half-metre grid that the mesh's triangles reach.
+std::vector<Eigen::Vector4f> partsOf(const RenderMesh& mesh, const Eigen::Vector3f& low) {
+  constexpr float kCell = 0.5F;
+  std::set<std::array<int, 3>> cells;
+  for (const RenderTriangle& t : mesh.triangles) {
+    Eigen::Vector3f from = mesh.positions[t.v[0]];
+    Eigen::Vector3f to = from;
+    for (const std::uint32_t v : t.v) {
+      from = from.cwiseMin(mesh.positions[v]);
+      to = to.cwiseMax(mesh.positions[v]);
+    }
+    const Eigen::Array3i first = ((from - low) / kCell).array().floor().cast<int>();
+    const Eigen::Array3i last = ((to - low) / kCell).array().floor().cast<int>();
+    for (int x = first.x(); x <= last.x(); ++x) {
+      for (int y = first.y(); y <= last.y(); ++y) {
+        for (int z = first.z(); z <= last.z(); ++z) {
+          cells.insert({x, y, z});
+        }
       }
     }
-    out[i] = static_cast<float>(open) / kOpennessRays;
   }
-  return out;
+  std::vector<Eigen::Vector4f> parts;
+  for (const auto& [x, y, z] : cells) {
+    const Eigen::Vector3f center =
+        low + kCell * (Eigen::Array3f(x, y, z).matrix() + Eigen::Vector3f::Constant(0.5F));
+    parts.emplace_back(center.x(), center.y(), center.z(), 0.87F * kCell);
+  }
+  return parts;
 }
 
 }  // namespace
+
+bool Moment::showsIn(const Eigen::Vector3f& eye, const Eigen::Vector3f& axis,
+                     float half_angle) const {
+  for (const PlacedObject& object : objects) {
+    if (!inCone(object.center_world, object.shape->radius, eye, axis, half_angle)) {
+      continue;
+    }
+    // In the object's frame, against its parts.
+    const Eigen::Matrix3f R_object_world = object.R_world_object.transpose();
+    const Eigen::Vector3f eye_object = R_object_world * (eye - object.p_world);
+    const Eigen::Vector3f axis_object = R_object_world * axis;
+    for (const Eigen::Vector4f& part : object.shape->parts) {
+      if (inCone(part.head<3>(), part.w(), eye_object, axis_object, half_angle)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
 
 float Moment::floorShade(float x, float y) const {
   float shade = 1.0F;
@@ -130,11 +152,12 @@ std::shared_ptr<const ObjectMesh> MomentMaker::shapeOf(int mesh) const {
   }
   shape->center = 0.5F * (shape->box_min + shape->box_max);
   shape->radius = 0.5F * (shape->box_max - shape->box_min).norm();
+  shape->parts = partsOf(shape->mesh, shape->box_min);
   shape->scene.reset(rtcNewScene(device_));
   attachTriangles(device_, shape->scene.get(), shape->mesh, 0,
                   static_cast<std::uint32_t>(shape->mesh.triangles.size()), kMaskAll);
   rtcCommitScene(shape->scene.get());
-  shape->openness = opennessOf(*shape);
+  shape->mesh.openness = opennessOf(shape->mesh, shape->scene.get());
   known = std::move(shape);
   return known;
 }
@@ -154,7 +177,7 @@ void MomentMaker::place(Moment& moment, int mesh, const SE3& T_world_object, std
     const Eigen::Vector3f p = object.R_world_object * shape.mesh.positions[i] + object.p_world;
     const Eigen::Vector3f n = object.R_world_object * shape.mesh.normals[i];
     object.vertex_lux.push_back(ProbeGrid::evaluate(light_.probes.cubeAt(p), n) *
-                                (0.1F + 0.9F * shape.openness[i]));
+                                shape.mesh.openness[i]);
   }
   object.shadow_center = object.center_world.head<2>();
   const Eigen::Vector2f axis = object.R_world_object.col(0).head<2>();

@@ -20,14 +20,13 @@ namespace parkade::sim {
 /// Instance id of the own car in instance images.
 inline constexpr std::uint32_t kEgoInstance = 0xffffffffU;
 
-/// A mesh that moves, ready to be placed: its own tree, and how open each vertex is to its
-/// surroundings (0 hidden by the object itself, 1 free) when it stands on a floor.
+/// A mesh that moves, ready to be placed, with its own tree.
 struct ObjectMesh {
   RenderMesh mesh;
   EmbreeScene scene;
-  std::vector<float> openness;
   Eigen::Vector3f center = Eigen::Vector3f::Zero();
   float radius = 0.0F;
+  std::vector<Eigen::Vector4f> parts;  ///< small spheres (center, radius) around all of the mesh
   Eigen::Vector3f box_min = Eigen::Vector3f::Zero();
   Eigen::Vector3f box_max = Eigen::Vector3f::Zero();
 };
@@ -62,6 +61,9 @@ struct Moment {
   std::vector<float> lamp_brightness;  ///< per luminaire, 1 where steady; empty: all steady
   std::vector<Beam> beams;
 
+  /// Whether anything that moves may show in a cone; its half angle in radians.
+  [[nodiscard]] bool showsIn(const Eigen::Vector3f& eye, const Eigen::Vector3f& axis,
+                             float half_angle) const;
   /// How much of the floor's light at a place the objects leave.
   [[nodiscard]] float floorShade(float x, float y) const;
   /// Lux that head lamps bring to a surface.

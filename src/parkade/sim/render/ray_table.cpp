@@ -17,6 +17,7 @@ RayTable::RayTable(const Camera& camera, int grid, const Eigen::Vector2d& offset
       tiles_y_((height_ + kTile - 1) / kTile) {
   PARKADE_CHECK(grid == 1 || grid == 2, "{} samples a side", grid);
   PARKADE_CHECK(width_ > 0 && height_ > 0, "{} x {} pixels", width_, height_);
+  slots_ = makeSlots();
   const int tiles = tiles_x_ * tiles_y_;
   packets_.resize(static_cast<std::size_t>(tiles) * packetsPerTile());
   cones_.resize(static_cast<std::size_t>(tiles));
@@ -26,18 +27,22 @@ RayTable::RayTable(const Camera& camera, int grid, const Eigen::Vector2d& offset
   fillPixels(camera);
 }
 
-void RayTable::place(int packet, int lane, int& x, int& y, int& sample) const {
-  if (grid_ == 1) {  // 4 x 4 pixels
-    constexpr int kAcross = kTile / 4;
-    x = packet % kAcross * 4 + lane % 4;
-    y = packet / kAcross * 4 + lane / 4;
-    sample = 0;
-  } else {  // 2 x 2 pixels of 2 x 2 samples
-    constexpr int kAcross = kTile / 2;
-    x = packet % kAcross * 2 + lane / 4 % 2;
-    y = packet / kAcross * 2 + lane / 8;
-    sample = lane % 4;
+std::vector<std::int32_t> RayTable::makeSlots() const {
+  std::vector<std::int32_t> slots;
+  for (int packet = 0; packet < packetsPerTile(); ++packet) {
+    for (int lane = 0; lane < kPacket; ++lane) {
+      if (grid_ == 1) {  // 4 x 4 pixels
+        const int x = packet % (kTile / 4) * 4 + lane % 4;
+        const int y = packet / (kTile / 4) * 4 + lane / 4;
+        slots.push_back(y * kTile + x);
+      } else {  // 2 x 2 pixels of 2 x 2 samples
+        const int x = packet % (kTile / 2) * 2 + lane / 4 % 2;
+        const int y = packet / (kTile / 2) * 2 + lane / 8;
+        slots.push_back((y * kTile + x) * 4 + lane % 4);
+      }
+    }
   }
+  return slots;
 }
 
 void RayTable::fillTile(const Camera& camera, int tile, const Eigen::Vector2d& offset_px) {
@@ -46,12 +51,10 @@ void RayTable::fillTile(const Camera& camera, int tile, const Eigen::Vector2d& o
   for (int p = 0; p < packetsPerTile(); ++p) {
     Packet& packet = packets_[static_cast<std::size_t>(tile) * packetsPerTile() + p];
     for (int lane = 0; lane < kPacket; ++lane) {
-      int x = 0;
-      int y = 0;
-      int sample = 0;
-      place(p, lane, x, y, sample);
-      x += tile % tiles_x_ * kTile;
-      y += tile / tiles_x_ * kTile;
+      const int sample = slot(p, lane) % (grid_ * grid_);
+      const int pixel_of_tile = slot(p, lane) / (grid_ * grid_);
+      const int x = tile % tiles_x_ * kTile + pixel_of_tile % kTile;
+      const int y = tile / tiles_x_ * kTile + pixel_of_tile / kTile;
       Eigen::Vector2d pixel = Eigen::Vector2d(x, y) + offset_px;
       if (grid_ == 2) {
         pixel += Eigen::Vector2d(sample % 2 - 0.5, sample / 2 - 0.5) * 0.5;

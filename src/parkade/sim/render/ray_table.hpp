@@ -43,8 +43,11 @@ class RayTable {
     return packets_.data() + static_cast<std::size_t>(tile) * packetsPerTile();
   }
   [[nodiscard]] const Cone& cone(int tile) const { return cones_[static_cast<std::size_t>(tile)]; }
-  /// The pixel inside its tile, and the sample of the pixel, that a lane of a packet serves.
-  void place(int packet, int lane, int& x, int& y, int& sample) const;
+  /// The sample that a lane of a packet serves: pixel inside the tile (row by row) times the
+  /// samples per pixel, plus the sample.
+  [[nodiscard]] int slot(int packet, int lane) const {
+    return slots_[static_cast<std::size_t>(packet) * kPacket + lane];
+  }
   /// Angle between neighbouring samples at a pixel, radians (geometric mean of both axes).
   [[nodiscard]] float spread(int x, int y) const {
     return spread_[static_cast<std::size_t>(y) * width_ + x];
@@ -53,6 +56,7 @@ class RayTable {
   [[nodiscard]] const std::vector<float>& axisCosines() const { return axis_cosine_; }
 
  private:
+  [[nodiscard]] std::vector<std::int32_t> makeSlots() const;
   void fillTile(const Camera& camera, int tile, const Eigen::Vector2d& offset_px);
   void fillPixels(const Camera& camera);
 
@@ -61,6 +65,7 @@ class RayTable {
   int grid_;
   int tiles_x_;
   int tiles_y_;
+  std::vector<std::int32_t> slots_;
   std::vector<Packet> packets_;
   std::vector<Cone> cones_;
   std::vector<float> spread_;

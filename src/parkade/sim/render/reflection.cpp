@@ -72,18 +72,21 @@ MirrorRay makeMirrorRay(const LampMap& lamps, const Surface& surface,
   return ray;
 }
 
-void traceMirrorRays(const FrameSetup& setup, const MirrorRay* rays, int count, Radiance& out,
-                     ReflectionBuffer& floor) {
+void traceMirrorRays(const FrameSetup& setup, RTCScene moving, const MirrorRay* rays, int count,
+                     Radiance& out, ReflectionBuffer& floor) {
   for (int begin = 0; begin < count; begin += kPacket) {
     RayPacket packet;
     packet.clear(kMaskAll);
     const int lanes = std::min(kPacket, count - begin);
+    bool floors_only = true;
     for (int k = 0; k < lanes; ++k) {
+      floors_only = floors_only && rays[begin + k].from_floor;
       // The floor's image of lamps comes from their map, without the noise of a few rays.
       packet.rays.ray.mask[k] = rays[begin + k].from_floor ? kMaskAll & ~kMaskLamp : kMaskAll;
       packet.set(k, rays[begin + k].origin, rays[begin + k].direction, kFar);
     }
-    traceBoth(*setup.tracer, setup.moment->scene.get(), packet, true);
+    const RTCScene scene = floors_only ? moving : setup.moment->scene.get();
+    traceBoth(*setup.tracer, scene, packet, true);
     for (int k = 0; k < lanes; ++k) {
       const MirrorRay& ray = rays[begin + k];
       const SurfaceHit hit = hitOf(*setup.tracer, packet, k);
@@ -110,10 +113,11 @@ void traceMirrorRays(const FrameSetup& setup, const MirrorRay* rays, int count, 
   }
 }
 
-void addFloorReflections(const ReflectionBuffer& floor, int threads, Radiance& out) {
+void addFloorReflections(ReflectionBuffer& floor, int threads, Radiance& out) {
   const int width = floor.width;
   const int height = floor.height;
-  std::vector<Eigen::Vector4f> across(floor.incoming.size());
+  std::vector<Eigen::Vector4f>& across = floor.across;
+  across.resize(floor.incoming.size());
   parallelFor(threads, static_cast<std::size_t>(height), [&](std::size_t y) {
     const Eigen::Vector4f* row = floor.incoming.data() + y * width;
     for (int x = 0; x < width; ++x) {

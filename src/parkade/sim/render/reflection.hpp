@@ -26,6 +26,7 @@ struct ReflectionBuffer {
   int height = 0;
   std::vector<Eigen::Vector4f> incoming;  ///< radiance; w is 1 where a floor pixel sent a ray
   std::vector<float> weights;             ///< reflectance per pixel
+  std::vector<Eigen::Vector4f> across;    ///< scratch: averaged along rows
   void reset(int w, int h);
 };
 
@@ -34,11 +35,12 @@ struct ReflectionBuffer {
 MirrorRay makeMirrorRay(const LampMap& lamps, const Surface& surface,
                         const Eigen::Vector3f& direction, float weight, int x, int y);
 
-/// Traces mirror rays; those of floors go to the buffer, others are added to the picture.
-void traceMirrorRays(const FrameSetup& setup, const MirrorRay* rays, int count, Radiance& out,
-                     ReflectionBuffer& floor);
+/// Traces mirror rays; those of floors go to the buffer, others are added to the picture. moving is
+/// what floors may mirror of the moving objects, or null.
+void traceMirrorRays(const FrameSetup& setup, RTCScene moving, const MirrorRay* rays, int count,
+                     Radiance& out, ReflectionBuffer& floor);
 
 /// Averages the floor's mirror image over neighbours and adds it to the picture.
-void addFloorReflections(const ReflectionBuffer& floor, int threads, Radiance& out);
+void addFloorReflections(ReflectionBuffer& floor, int threads, Radiance& out);
 
 }  // namespace parkade::sim

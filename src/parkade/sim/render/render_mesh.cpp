@@ -13,6 +13,7 @@
 #include "parkade/core/check.hpp"
 #include "parkade/core/random.hpp"
 #include "parkade/sim/render/embree.hpp"
+#include "parkade/sim/render/openness.hpp"
 
 namespace parkade::sim {
 namespace {
@@ -210,7 +211,9 @@ RenderMesh prepareMesh(const Mesh& mesh, const Scene& scene, const SubdivisionLi
   std::vector<float> limit_of_material;
   for (const Material& material : scene.materials) {
     const unsigned mask = maskOf(material);
-    const bool uncut = mask == kMaskFloor || mask == kMaskLamp;
+    // Floors have a map of their own; vehicles are lit from the probes and finely cut anyway.
+    const bool uncut =
+        mask == kMaskFloor || mask == kMaskLamp || material.label == SemanticClass::kVehicle;
     limit_of_material.push_back(uncut                   ? std::numeric_limits<float>::max()
                                 : mask == kMaskOverhead ? limits.overhead
                                                         : limits.other);
@@ -220,7 +223,7 @@ RenderMesh prepareMesh(const Mesh& mesh, const Scene& scene, const SubdivisionLi
   return out;
 }
 
-StaticGeometry flatten(const Scene& scene, const SubdivisionLimits& limits) {
+StaticGeometry flatten(const Scene& scene, const SubdivisionLimits& limits, RTCDevice device) {
   std::vector<RenderMesh> prepared(scene.meshes.size());
   StaticGeometry out;
   for (const StaticObject& object : scene.objects) {
@@ -229,6 +232,12 @@ StaticGeometry flatten(const Scene& scene, const SubdivisionLimits& limits) {
     RenderMesh& mesh = prepared[index];
     if (mesh.triangles.empty()) {
       mesh = prepareMesh(scene.meshes[index], scene, limits);
+      const bool vehicle =
+          std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const RenderTriangle& t) {
+            return scene.materials[t.material].label == SemanticClass::kVehicle;
+          });
+      mesh.openness =
+          vehicle ? opennessOf(mesh, device) : std::vector<float>(mesh.positions.size(), 1.0F);
     }
     const auto base = static_cast<std::uint32_t>(out.mesh.positions.size());
     const Eigen::Matrix3d R = object.T_world_mesh.rotation().matrix();
@@ -237,6 +246,7 @@ StaticGeometry flatten(const Scene& scene, const SubdivisionLimits& limits) {
       out.mesh.positions.emplace_back((R * mesh.positions[i].cast<double>() + p).cast<float>());
       out.mesh.normals.emplace_back((R * mesh.normals[i].cast<double>()).cast<float>());
       out.mesh.uvs.push_back(mesh.uvs[i]);
+      out.mesh.openness.push_back(mesh.openness[i]);
     }
     for (RenderTriangle t : mesh.triangles) {
       for (std::uint32_t& v : t.v) {

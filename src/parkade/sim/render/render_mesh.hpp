@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "parkade/sim/render/embree.hpp"
 #include "parkade/sim/scene.hpp"
 
 namespace parkade::sim {
@@ -24,15 +25,18 @@ struct RenderMesh {
   std::vector<Eigen::Vector3f> normals;
   std::vector<Eigen::Vector2f> uvs;
   std::vector<RenderTriangle> triangles;
+  /// Per vertex: share of its light that the object itself does not hide (0 to 1); empty until
+  /// computed (openness.hpp).
+  std::vector<float> openness;
 };
 
 /// Longest edges of triangles that light is baked on, m.
 struct SubdivisionLimits {
-  float overhead = 1.2F;  ///< ceiling
+  float overhead = 0.9F;  ///< ceiling
   float other = 0.7F;     ///< walls, pillars, cars
 };
 
-/// Splits vertices by normal and cuts long edges; floor materials and lamps are left uncut. Edges
+/// Splits vertices by normal and cuts long edges; floors, lamps and vehicles are left uncut. Edges
 /// shared by two triangles are cut at the same place, so that no cracks open.
 RenderMesh prepareMesh(const Mesh& mesh, const Scene& scene, const SubdivisionLimits& limits);
 
@@ -50,6 +54,6 @@ struct StaticGeometry {
   std::vector<Group> groups;
 };
 
-StaticGeometry flatten(const Scene& scene, const SubdivisionLimits& limits);
+StaticGeometry flatten(const Scene& scene, const SubdivisionLimits& limits, RTCDevice device);
 
 }  // namespace parkade::sim

@@ -35,13 +35,14 @@ struct Renderer::CameraTables {
   RayTable picture;
   RayTable centers;
   std::vector<RayTable> sub_frames;
+  std::vector<float> lens_share;
 };
 
 Renderer::Renderer(std::shared_ptr<const Scene> scene, const RenderOptions& options)
     : scene_(std::move(scene)),
       options_(options),
       device_(makeEmbreeDevice()),
-      tracer_(device_.get(), flatten(*scene_, kLimits)),
+      tracer_(device_.get(), flatten(*scene_, kLimits, device_.get())),
       light_(timedBake(*scene_, tracer_, options_, bake_seconds_)),
       shader_(*scene_, tracer_, light_),
       moments_(*scene_, device_.get(), light_, kLimits),
@@ -52,7 +53,8 @@ Renderer::~Renderer() = default;
 int Renderer::addCamera(const Camera& camera) {
   const int grid = options_.fast ? 1 : 2;
   auto tables = std::make_unique<CameraTables>(CameraTables{
-      camera, RayTable(camera, grid, {0.0, 0.0}), RayTable(camera, 1, {0.0, 0.0}), {}});
+      camera, RayTable(camera, grid, {0.0, 0.0}), RayTable(camera, 1, {0.0, 0.0}), {}, {}});
+  tables->lens_share = sensor_.lensShare(tables->picture.axisCosines());
   if (options_.sensor.motion_blur > 1) {
     for (int k = 0; k < 4; ++k) {
       tables->sub_frames.emplace_back(camera, 1, Eigen::Vector2d(k % 2 - 0.5, k / 2 - 0.5) * 0.5);
@@ -92,7 +94,7 @@ Radiance Renderer::renderRadiance(int camera, const SE3& T_world_cam, const Mome
 cv::Mat Renderer::render(int camera, const SE3& T_world_cam, const Moment& moment,
                          std::uint64_t frame) const {
   const Radiance radiance = renderRadiance(camera, T_world_cam, moment);
-  return sensor_.expose(radiance, sensor_.meter(radiance), tables(camera).picture.axisCosines(),
+  return sensor_.expose(radiance, sensor_.meter(radiance), tables(camera).lens_share,
                         hash64(static_cast<std::uint64_t>(camera), frame), options_.threads);
 }
 
@@ -128,7 +130,7 @@ cv::Mat Renderer::render(int camera, const CameraMotion& motion, double t,
   for (Eigen::Vector3f& pixel : sum.pixels) {
     pixel /= static_cast<float>(count);
   }
-  return sensor_.expose(sum, exposure, c.picture.axisCosines(),
+  return sensor_.expose(sum, exposure, c.lens_share,
                         hash64(static_cast<std::uint64_t>(camera), frame), options_.threads);
 }
 

@@ -74,6 +74,15 @@ double SensorModel::vignette(double axis_cosine) {
   return c * c * c * c;
 }
 
+std::vector<float> SensorModel::lensShare(const std::vector<float>& axis_cosines) const {
+  std::vector<float> share(axis_cosines.size(), 1.0F);
+  if (options_.vignetting) {
+    std::transform(axis_cosines.begin(), axis_cosines.end(), share.begin(),
+                   [](float cosine) { return static_cast<float>(vignette(cosine)); });
+  }
+  return share;
+}
+
 Exposure SensorModel::meter(const Radiance& radiance) const {
   if (options_.fixed_exposure_ms > 0.0) {
     return {options_.fixed_exposure_ms * 1e-3, options_.fixed_gain};
@@ -99,12 +108,12 @@ Exposure SensorModel::meter(const Radiance& radiance) const {
 }
 
 cv::Mat SensorModel::expose(const Radiance& radiance, const Exposure& exposure,
-                            const std::vector<float>& axis_cosines, std::uint64_t key,
+                            const std::vector<float>& lens_share, std::uint64_t key,
                             int threads) const {
   const int width = radiance.width;
   const int height = radiance.height;
-  PARKADE_CHECK(axis_cosines.empty() || axis_cosines.size() == radiance.pixels.size(),
-                "{} cosines for {} pixels", axis_cosines.size(), radiance.pixels.size());
+  PARKADE_CHECK(lens_share.empty() || lens_share.size() == radiance.pixels.size(),
+                "{} shares for {} pixels", lens_share.size(), radiance.pixels.size());
   cv::Mat image(height, width, CV_8UC3);
   const std::uint64_t mixed = hash64(key, 0x5e45);
   // Red and blue filters pass less light; white balance lifts them, and their noise, again.
@@ -126,8 +135,7 @@ cv::Mat SensorModel::expose(const Radiance& radiance, const Exposure& exposure,
     electrons_row.resize(3U * width);
     bytes.resize(3U * width);
     for (int x = 0; x < width; ++x) {
-      const float cosine = axis_cosines.empty() ? 1.0F : axis_cosines[y * width + x];
-      const float share = options_.vignetting ? static_cast<float>(vignette(cosine)) : 1.0F;
+      const float share = lens_share.empty() ? 1.0F : lens_share[y * width + x];
       for (std::size_t c = 0; c < 3; ++c) {
         electrons_row[3U * x + c] = share * electrons[c];
       }

@@ -65,10 +65,10 @@ class SensorModel {
   /// the target level, by time first, then by gain, within their limits.
   [[nodiscard]] Exposure meter(const Radiance& radiance) const;
 
-  /// Digital picture, CV_8UC3 BGR. axis_cosines: cosine between each pixel's ray and the optical
-  /// axis (0: no ray, black); empty: no vignetting. key: any number that names the picture.
+  /// Digital picture, CV_8UC3 BGR. lens_share: what the lens leaves of each pixel's light (see
+  /// lensShare); empty: all. key: any number that names the picture.
   [[nodiscard]] cv::Mat expose(const Radiance& radiance, const Exposure& exposure,
-                               const std::vector<float>& axis_cosines, std::uint64_t key,
+                               const std::vector<float>& lens_share, std::uint64_t key,
                                int threads) const;
 
   /// Electrons per second that a luminance of 1 cd/m^2 (white) frees in a green pixel on the axis.
@@ -79,6 +79,8 @@ class SensorModel {
   }
   /// Share of the light left by the lens at an angle from the axis.
   [[nodiscard]] static double vignette(double axis_cosine);
+  /// The share for each pixel's cosine from the axis; all 1 where vignetting is switched off.
+  [[nodiscard]] std::vector<float> lensShare(const std::vector<float>& axis_cosines) const;
   [[nodiscard]] const SensorOptions& options() const { return options_; }
 
  private:

@@ -113,7 +113,7 @@ TEST(SensorModel, VignettingFollowsItsLaw) {
   for (int i = 0; i <= 90; ++i) {
     cosines.push_back(static_cast<float>(std::cos(i * M_PI / 180.0)));
   }
-  const cv::Mat image = sensor.expose(radiance, {0.01, 4.0}, cosines, 0, 1);
+  const cv::Mat image = sensor.expose(radiance, {0.01, 4.0}, sensor.lensShare(cosines), 0, 1);
   const double middle = linearOfSrgb(image.at<cv::Vec3b>(0, 0)[1]);
   double last = 2.0;
   for (const int angle : {0, 20, 40, 60, 80}) {

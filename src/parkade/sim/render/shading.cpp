@@ -123,40 +123,44 @@ float Shader::lampBrightness(const Eigen::Vector3f& p, const Moment& moment) con
 void Shader::shadeFloor(const SurfaceHit* const* hits, const Eigen::Vector3f* const* directions,
                         int count, const Eigen::Vector3f& eye, float spread, int samples,
                         const Moment& moment, Surface& out) const {
+  // The footprint of a sample is an ellipse, longer along the ray by 1 / cosine: taps along it keep
+  // the paint sharp across while they average along. They fill the gap to the next sample evenly,
+  // which cancels the beat between paint and pixels. A lone sample needs more of them than one of
+  // four, which the others complement.
+  const Eigen::Vector3f& d = *directions[0];
+  const float cosine = std::max(std::abs(d.dot(out.normal)), 0.02F);
+  const float gap = samples > 1 ? 0.3F : 0.6F;
+  const int taps = std::min(kMaxTaps, 1 + static_cast<int>(gap / cosine));
+  const float pitch = spread * hits[0]->t / cosine;
+  const float footprint = kSoftness * pitch * std::sqrt(cosine / static_cast<float>(taps));
+  const float level = std::sqrt(std::max(d.x() * d.x() + d.y() * d.y(), 1e-12F));
+  const float step = pitch / (static_cast<float>(taps) * level);
+  const float step_x = step * d.x();
+  const float step_y = step * d.y();
+  const float start = -0.5F * static_cast<float>(taps - 1);
   Eigen::Vector3f albedo = Eigen::Vector3f::Zero();
   Eigen::Vector3f middle = Eigen::Vector3f::Zero();
   float specular = 0.0F;
   float roughness = 0.0F;
   for (int i = 0; i < count; ++i) {
-    const Eigen::Vector3f& d = *directions[i];
-    const Eigen::Vector3f p = eye + hits[i]->t * d;
+    const Eigen::Vector3f p = eye + hits[i]->t * *directions[i];
     middle += p;
-    // The footprint of a sample is an ellipse, longer along the ray by 1 / cosine: taps along it
-    // keep the paint sharp across while they average along.
-    const float cosine = std::max(std::abs(d.dot(out.normal)), 0.02F);
-    const float across = kSoftness * spread * hits[i]->t;
-    const float length = across / cosine;
-    // Taps fill the gap to the next sample evenly, which cancels the beat between paint and pixels.
-    const float pitch = spread * hits[i]->t / cosine;
-    // A lone sample needs more of them than one of four, which the others complement.
-    const float gap = samples > 1 ? 0.3F : 0.6F;
-    const int taps = std::min(kMaxTaps, 1 + static_cast<int>(gap / cosine));
-    const float footprint = std::sqrt(across * length / static_cast<float>(taps));
-    Eigen::Vector2f step = d.head<2>();
-    step *= pitch / (static_cast<float>(taps) * std::max(step.norm(), 1e-6F));
+    float x = p.x() + start * step_x;
+    float y = p.y() + start * step_y;
     for (int k = 0; k < taps; ++k) {
-      const float offset = static_cast<float>(k) - 0.5F * static_cast<float>(taps - 1);
-      const FloorSample sample =
-          scene_.floor->sample(p.x() + offset * step.x(), p.y() + offset * step.y(), footprint);
-      const float weight = 1.0F / static_cast<float>(taps * count);
-      albedo += weight * sample.albedo;
-      specular += weight * sample.specular;
-      roughness += weight * sample.roughness;
+      const FloorSample sample = scene_.floor->sample(x, y, footprint);
+      albedo += sample.albedo;
+      specular += sample.specular;
+      roughness += sample.roughness;
+      x += step_x;
+      y += step_y;
     }
   }
+  const float weight = 1.0F / static_cast<float>(taps * count);
+  albedo *= weight;
   out.position = middle / static_cast<float>(count);
-  out.specular = specular;
-  out.roughness = roughness;
+  out.specular = specular * weight;
+  out.roughness = roughness * weight;
   out.is_floor = true;
   Eigen::Vector3f lux = floorLux(out.position.x(), out.position.y(), moment);
   if (!moment.objects.empty()) {

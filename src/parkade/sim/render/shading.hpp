@@ -76,6 +76,10 @@ class Shader {
   /// Radiance of rays that leave the garage.
   [[nodiscard]] const Eigen::Vector3f& background() const { return background_; }
   [[nodiscard]] const Eigen::Vector3f& sky() const { return sky_; }
+  /// Height of the floor below a place, m.
+  [[nodiscard]] float floorHeight(const Eigen::Vector3f& p) const {
+    return light_.floor_z[light_.floor_grid.index(p.x(), p.y())];
+  }
   [[nodiscard]] const LampMap& lamps() const { return lamps_; }
 
  private:

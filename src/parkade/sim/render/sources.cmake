@@ -11,6 +11,7 @@ set(RENDER_SOURCES
     render/light_bake.cpp
     render/light_grids.cpp
     render/moment.cpp
+    render/openness.cpp
     render/overhead.cpp
     render/parallel.cpp
     render/ray_table.cpp
@@ -23,7 +24,7 @@ set(RENDER_SOURCES
     render/texture.cpp
     render/tracer.cpp)
 # Fused multiply-add would make pictures differ between instruction sets.
-set_source_files_properties(render/sensor_kernel.cpp PROPERTIES
+set_source_files_properties(${RENDER_SOURCES} PROPERTIES
                             COMPILE_OPTIONS "-ffp-contract=off;-fno-math-errno;-fno-trapping-math")
 set(RENDER_TESTS
     render/geometry_exactness_test.cpp

@@ -63,7 +63,7 @@ MipTexture::MipTexture(const Texture& texture) {
 }
 
 Eigen::Vector3f MipTexture::sample(float u, float v, float texels) const {
-  const int wanted = texels > 1.0F ? static_cast<int>(std::log2(texels) + 0.5F) : 0;
+  const int wanted = texels > 1.0F ? static_cast<int>(fastLog2(texels) + 0.5F) : 0;
   const Level& level =
       levels_[static_cast<std::size_t>(std::min(wanted, static_cast<int>(levels_.size()) - 1))];
   const float x = (u - std::floor(u)) * level.width - 0.5F;
