@@ -86,9 +86,11 @@ class PillarBuilder {
     const Eigen::Vector2d half = 0.5 * pillar.size;
     const Eigen::Vector2d middle = pillar.center + half.cwiseProduct(normal);
     const Eigen::Vector2d side = half.cwiseProduct(right);
-    mesh_.quad(point3(middle - side, base_ + z0), point3(middle + side, base_ + z0),
-               point3(middle + side, base_ + z1), point3(middle - side, base_ + z1), material,
-               repeats);
+    const auto foot = [&](const Eigen::Vector2d& p) {  // on the floor, also where it slopes
+      return point3(p, z0 == 0.0 ? garage_.floorHeight(p) - 1e-3 : base_ + z0);
+    };
+    mesh_.quad(foot(middle - side), foot(middle + side), point3(middle + side, base_ + z1),
+               point3(middle - side, base_ + z1), material, repeats);
   }
 
   void ring(const Pillar& pillar, double z0, double z1, std::uint16_t material) {

@@ -70,11 +70,11 @@ void addSprinklers(const Run& run, double ceiling, std::uint16_t red, MeshBuilde
   }
 }
 
-void addTray(const Run& run, double ceiling, std::uint16_t metal, MeshBuilder& mesh) {
-  boxAlong(run, 0.5 * run.length, 0.0, ceiling - 0.29, 0.5 * run.length, 0.11, 0.025, metal, mesh);
+void addTray(const Run& run, double ceiling, double y0, std::uint16_t metal, MeshBuilder& mesh) {
+  boxAlong(run, 0.5 * run.length, y0, ceiling - 0.29, 0.5 * run.length, 0.11, 0.025, metal, mesh);
   for (double s = 1.0; s < run.length; s += 2.5) {
     for (const double y : {-0.1, 0.1}) {
-      boxAlong(run, s, y, ceiling - 0.15, 0.008, 0.008, 0.15, metal, mesh);
+      boxAlong(run, s, y0 + y, ceiling - 0.15, 0.008, 0.008, 0.15, metal, mesh);
     }
   }
 }
@@ -107,7 +107,7 @@ void addTube(const Frame2& at, double ceiling, bool lit, bool flickers, const Ga
 void addServices(const Garage& garage, const GarageStyle& style, Random random, Palette& palette,
                  MeshBuilder& mesh) {
   const std::uint16_t metal =
-      palette.add("duct", SemanticClass::kCeiling, Eigen::Vector3f::Constant(0.52F), 0.45F, 0.25F);
+      palette.add("duct", SemanticClass::kCeiling, Eigen::Vector3f::Constant(0.52F), 0.8F, 0.1F);
   const std::uint16_t dark =
       palette.add("duct_dark", SemanticClass::kCeiling, Eigen::Vector3f::Constant(0.12F));
   const std::uint16_t red =
@@ -117,7 +117,10 @@ void addServices(const Garage& garage, const GarageStyle& style, Random random, 
   const std::uint16_t bottle =
       palette.add("extinguisher", SemanticClass::kPillar, {0.50F, 0.02F, 0.02F}, 0.35F);
   for (const Run& run : runsOf(garage)) {
-    addTray(run, garage.ceiling_height, dark, mesh);
+    for (const double y : {-0.25, 0.0, 0.25}) {
+      if (style.lamps_in_line != (y == 0.0)) continue;
+      addTray(run, garage.ceiling_height, y * run.width, style.tray_dark ? dark : white, mesh);
+    }
     const double u = random.uniform();
     if (u < 0.45) addDuct(run, garage.ceiling_height, metal, dark, mesh);
     if (u > 0.3) addSprinklers(run, garage.ceiling_height, red, mesh);
@@ -157,14 +160,17 @@ void addLamps(const Garage& garage, const GarageStyle& style, Random random, Pal
   };
   for (const Run& run : runsOf(garage)) {
     const int count = std::max(1, static_cast<int>(std::lround(run.length / style.lamp_spacing)));
-    for (int i = 0; i < count; ++i) {
-      const double s = run.length * (i + 0.5) / count;
-      place({run.frame * Eigen::Vector2d(s, 0.0),
+    // Over both lanes, staggered: even light without glare on every tube.
+    for (int i = 0; i < 2 * count; ++i) {
+      const double s = run.length * (i + 0.5) / (2 * count);
+      const double y = style.lamps_in_line ? 0.0 : (i % 2 == 0 ? 0.25 : -0.25) * run.width;
+      if (style.lamps_in_line && i % 2 == 1) continue;
+      place({run.frame * Eigen::Vector2d(s, y),
              run.frame.heading + (style.lamps_across ? M_PI_2 : 0.0)});
     }
   }
-  // Some over the slots: every fifth one.
-  for (std::size_t i = 2; i < garage.slots.size(); i += 5) {
+  // Some over the slots.
+  for (std::size_t i = 1; i < garage.slots.size(); i += style.lamps_in_line ? 6 : 3) {
     const auto& c = garage.slots[i].corners;
     const Eigen::Vector2d front = c[1] - c[0];
     place({0.25 * (c[0] + c[1] + c[2] + c[3]), std::atan2(front.y(), front.x())});

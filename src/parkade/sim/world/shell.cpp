@@ -16,7 +16,7 @@ constexpr double kDoorHeight = 2.05;
 constexpr double kTextureSize = 4.0;  // m per repeat of the stain texture
 
 struct ShellMaterials {
-  std::uint16_t floor, lower, upper, ceiling, beam, door, frame, red, exit_sign, ramp;
+  std::uint16_t floor, lower, upper, ceiling, beam, door, frame, red, exit_sign, ramp, ramp_wall;
   std::array<std::uint16_t, 4> posters;
 };
 
@@ -41,7 +41,10 @@ ShellMaterials addMaterials(const GarageStyle& style, Random random, Palette& pa
   const int exit_texture = palette.addTexture(guideTexture(0.5, 0.2, "EXIT"));
   m.exit_sign = palette.addGlow("exit_light", SemanticClass::kWall, Eigen::Vector3f::Constant(1.5F),
                                 exit_texture);
-  m.ramp = palette.add("ramp", SemanticClass::kFloor, {0.30F, 0.29F, 0.27F}, 0.9F, 0.04F, form);
+  // Under the open sky: what it receives does not come from the lamps that the bake knows.
+  m.ramp = palette.addGlow("ramp", SemanticClass::kFloor, Eigen::Vector3f(1.0F, 1.0F, 1.03F), form);
+  m.ramp_wall =
+      palette.addGlow("ramp_wall", SemanticClass::kWall, Eigen::Vector3f(0.8F, 0.8F, 0.83F), form);
   for (std::size_t i = 0; i < m.posters.size(); ++i) {
     const int texture = palette.addTexture(posterTexture(random.fork("poster", i).bits()));
     m.posters[i] =
@@ -97,11 +100,32 @@ class WallBuilder {
   [[nodiscard]] double top() const { return garage_.ceiling_height; }
 
  private:
+  /// Where the floor slopes, the lower edge follows it piece by piece.
   void panel(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double z0, double z1,
              std::uint16_t material) {
-    const Eigen::Vector2f repeats(static_cast<float>((b - a).norm() / kTextureSize),
-                                  static_cast<float>((z1 - z0) / kTextureSize));
-    mesh_.quad(point3(b, z0), point3(a, z0), point3(a, z1), point3(b, z1), material, repeats);
+    const double length = (b - a).norm();
+    const bool on_floor = z0 < -0.1;
+    const int pieces =
+        on_floor && !garage_.ramps.empty() ? std::max(1, static_cast<int>(length / 1.5)) : 1;
+    for (int i = 0; i < pieces; ++i) {
+      const Eigen::Vector2d p = a + (b - a) * i / pieces;
+      const Eigen::Vector2d q = a + (b - a) * (i + 1) / pieces;
+      const double low_p = on_floor ? garage_.floorHeight(p) - 1e-3 : z0;
+      const double low_q = on_floor ? garage_.floorHeight(q) - 1e-3 : z0;
+      // Texture coordinates run from the far end of the run.
+      const auto uv = [&](const Eigen::Vector2d& at, double z) {
+        return Eigen::Vector2f(static_cast<float>((b - at).norm() / kTextureSize),
+                               static_cast<float>(z / kTextureSize));
+      };
+      const Eigen::Vector2d along = (b - a) / length;
+      const Eigen::Vector3f normal = point3({-along.y(), along.x()}, 0.0);
+      const std::uint32_t v = mesh_.vertex(point3(q, low_q), normal, uv(q, low_q));
+      mesh_.vertex(point3(p, low_p), normal, uv(p, low_p));
+      mesh_.vertex(point3(p, z1), normal, uv(p, z1));
+      mesh_.vertex(point3(q, z1), normal, uv(q, z1));
+      mesh_.triangle(v, v + 1, v + 2, material);
+      mesh_.triangle(v, v + 2, v + 3, material);
+    }
   }
 
   const Garage& garage_;
@@ -111,14 +135,16 @@ class WallBuilder {
 };
 
 void addFloor(const Garage& garage, std::uint16_t material, MeshBuilder& mesh) {
+  // A little wider than the outline, so that no ray slips between floor and wall.
+  const Eigen::Vector2d low = garage.min - Eigen::Vector2d::Constant(0.2);
   const double step = garage.ramps.empty() ? 1000.0 : 0.75;
-  const Eigen::Vector2d size = garage.max - garage.min;
+  const Eigen::Vector2d size = garage.max - garage.min + Eigen::Vector2d::Constant(0.4);
   const int nx = std::max(1, static_cast<int>(std::ceil(size.x() / step)));
   const int ny = std::max(1, static_cast<int>(std::ceil(size.y() / step)));
   std::vector<std::uint32_t> index;
   for (int j = 0; j <= ny; ++j) {
     for (int i = 0; i <= nx; ++i) {
-      const Eigen::Vector2d p = garage.min + Eigen::Vector2d(size.x() * i / nx, size.y() * j / ny);
+      const Eigen::Vector2d p = low + Eigen::Vector2d(size.x() * i / nx, size.y() * j / ny);
       constexpr double kStep = 0.01;
       const double dx = (garage.floorHeight(p + Eigen::Vector2d(kStep, 0.0)) -
                          garage.floorHeight(p - Eigen::Vector2d(kStep, 0.0))) /
@@ -187,7 +213,7 @@ void addRamp(const Garage& garage, const Entrance& entrance, const ShellMaterial
     const Eigen::Vector2d middle = at * Eigen::Vector2d(-0.5 * kLength, side * (half + 0.1));
     mesh.box(point3(middle, z0 + 0.5 * kRise + 0.45),
              {static_cast<float>(0.5 * kLength), 0.1F, static_cast<float>(0.5 * kRise + 0.55)},
-             m.upper, static_cast<float>(entrance.heading));
+             m.ramp_wall, static_cast<float>(entrance.heading));
   }
 }
 

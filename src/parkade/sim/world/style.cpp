@@ -148,6 +148,8 @@ void drawStructure(GarageStyle& style, Random random) {
 void drawLight(GarageStyle& style, Random random) {
   style.lamp_spacing = random.uniform(5.0, 8.0);
   style.lamps_across = random.chance(0.3);
+  style.lamps_in_line = random.chance(0.45);
+  style.tray_dark = random.chance(0.6);
   style.lamp_dead_share = random.chance(0.5) ? random.uniform(0.0, 0.25) : 0.0;
   style.lamp_flicker_share = random.chance(0.3) ? random.uniform(0.0, 0.08) : 0.0;
   const float warm = static_cast<float>(random.uniform(-0.5, 1.0));

@@ -83,8 +83,10 @@ struct GarageStyle {
   double limit_sign_share = 0.08;  ///< of the pillars with a speed-limit plate
 
   // Light.
-  double lamp_spacing = 6.0;  ///< m along an aisle
-  bool lamps_across = false;  ///< tubes across the aisle, else along
+  double lamp_spacing = 6.0;   ///< m along an aisle
+  bool lamps_across = false;   ///< tubes across the aisle, else along
+  bool lamps_in_line = false;  ///< one line over the middle, else one over each lane, staggered
+  bool tray_dark = true;       ///< cable trays above the lamps
   double lamp_dead_share = 0.0;
   double lamp_flicker_share = 0.0;
   Eigen::Vector3f lamp_colour{1.0F, 0.97F, 0.92F};
