@@ -28,9 +28,10 @@ Eigen::Vector3d originVelocity(const WindowFrame& frame, const SE3& T_imu_vehicl
 
 VioEstimator::Impl::Impl(const Rig& rig, const VioOptions& options)
     : options_(options), features_(options) {
-  noise_.gyroscope_noise_density = rig.imu.gyroscope_noise_density;
+  noise_.gyroscope_noise_density = options.imu_noise_factor * rig.imu.gyroscope_noise_density;
   noise_.gyroscope_random_walk = rig.imu.gyroscope_random_walk;
-  noise_.accelerometer_noise_density = rig.imu.accelerometer_noise_density;
+  noise_.accelerometer_noise_density =
+      options.imu_noise_factor * rig.imu.accelerometer_noise_density;
   noise_.accelerometer_random_walk = rig.imu.accelerometer_random_walk;
   gap_ns_ = fromSeconds(options.max_imu_gap_s);
   T_vehicle_imu_ = rig.imu.T_vehicle_imu;

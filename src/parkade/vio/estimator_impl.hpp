@@ -39,6 +39,21 @@ class VioEstimator::Impl {
   PoseEstimate startUp(const TrackSet& tracks);
   bool startAtRest();
   bool startInMotion();
+  struct StartTrial {
+    Window window;
+    SolveSummary summary;
+    int landmarks = 0;
+    double speed = 0.0;        ///< m/s
+    double speed_sigma = 0.0;  ///< m/s
+    double median_distance = 1.0;
+    [[nodiscard]] double cost() const;  ///< per observation
+    [[nodiscard]] bool fits() const;
+    [[nodiscard]] bool sharp() const;
+    [[nodiscard]] double penalty() const;
+  };
+  StartTrial tryStart(std::vector<NavState> states, const ImuBias& bias, Vector15d sigma);
+  [[nodiscard]] std::vector<NavState> withSpeed(const std::vector<NavState>& states,
+                                                double speed) const;
   void enterWindow(const std::vector<NavState>& states, std::size_t first, const ImuBias& bias,
                    const Vector15d& sigma);
   void restart(const std::string& reason);

@@ -13,9 +13,13 @@ constexpr double kGaugePosition = 1e-4;  // m: the first pose is where it is by 
 constexpr double kGaugeHeading = 1e-5;   // rad
 constexpr std::size_t kMinStartFrames = 5;
 constexpr double kMinRestSpan = 0.25;  // s of quiet readings
-constexpr int kStartIterations = 12;
-constexpr double kMaxStartCost = 3.0;    // per observation, half squared sigmas
-constexpr double kMaxSpeedSpread = 0.1;  // of the speed
+constexpr int kStartIterations = 15;
+constexpr double kMaxStartCost = 3.0;  // per observation, half squared sigmas
+constexpr int kMinStartObservations = 60;
+constexpr double kTrialSpeeds[] = {0.4, 1.0, 2.0, 4.0, 8.0};  // m/s
+constexpr double kUsualDistance = 4.0;                        // m, of landmarks
+constexpr double kDistanceSpread = 2.5;                       // factor, 1 sigma
+constexpr double kMaxSpeedSpread = 0.1;                       // of the speed
 
 }  // namespace
 
@@ -113,9 +117,44 @@ bool VioEstimator::Impl::startInMotion() {
   sigma(5) = kGaugeHeading;
   sigma.segment<3>(9).setConstant(options_.start_up.bias_gyro_sigma);
   sigma.segment<3>(12).setConstant(options_.start_up.bias_accel_sigma);
-  std::vector<NavState> states = alignment.states;
+  const bool late = span >= options_.start_up.max_span_s;
+  StartTrial best = tryStart(alignment.states, alignment.bias, sigma);
+  if (!best.sharp() && late) {
+    // Even motion hardly tells its scale from few images, and noise then shrinks the linear
+    // solution: other speeds along its direction are tried, and the most plausible is kept.
+    for (const double speed : kTrialSpeeds) {
+      StartTrial trial = tryStart(withSpeed(alignment.states, speed), alignment.bias, sigma);
+      if (trial.fits() && (!best.fits() || trial.penalty() < best.penalty())) {
+        best = std::move(trial);
+      }
+    }
+  }
+  if (best.fits() && (best.sharp() || late)) {
+    window_ = std::move(best.window);
+    newest_covariance_ = best.summary.newest_covariance;
+    statistics.landmarks = best.landmarks;
+    statistics.observations = best.summary.observations;
+    logInfo("started in motion: {} frames, {} landmarks, speed {:.2f} +- {:.2f} m/s, cost {:.2f}",
+            window_.frames.size(), best.landmarks, best.speed, best.speed_sigma, best.cost());
+    return true;
+  }
+  start_reason_ =
+      best.fits()
+          ? fmt::format("speed uncertain: {:.2f} +- {:.2f} m/s", best.speed, best.speed_sigma)
+          : fmt::format("the motion does not explain the images: {:.1f}", best.cost());
+  window_.frames.clear();
+  window_.features.clear();
+  window_.prior = {};
+  window_.start.frame_id = -1;
+  features_.clear();
+  return false;
+}
+
+// The window that grows from given states of the start's frames.
+VioEstimator::Impl::StartTrial VioEstimator::Impl::tryStart(std::vector<NavState> states,
+                                                            const ImuBias& bias, Vector15d sigma) {
   continueFromLast(states, sigma);
-  enterWindow(states, 0, alignment.bias, sigma);
+  enterWindow(states, 0, bias, sigma);
   // The biases' prior is about zero, not about the alignment.
   window_.start.bias = ImuBias{};
   features_.triangulateNew(window_);
@@ -123,29 +162,54 @@ bool VioEstimator::Impl::startInMotion() {
   features_.forgive(window_);
   features_.triangulateNew(window_);
   const std::vector<WindowFeature*> selected = features_.select(window_);
-  const SolveSummary summary = solveWindow(window_, selected, solveOptions(kStartIterations));
-  const double cost = summary.final_cost / std::max(1, summary.observations);
-  newest_covariance_ = summary.newest_covariance;
-  const double speed = window_.frames.back().state.v_odom.norm();
-  const double speed_sigma = std::sqrt(newest_covariance_.block<3, 3>(6, 6).trace());
-  const bool fits = summary.ok && summary.observations > 40 && cost < kMaxStartCost;
-  const bool sharp = speed_sigma < kMaxSpeedSpread * std::max(speed, 0.5);
-  const bool late = span >= options_.start_up.max_span_s;
-  if (fits && (sharp || late)) {
-    statistics.landmarks = static_cast<int>(selected.size());
-    statistics.observations = summary.observations;
-    logInfo("started in motion: {} frames, {} landmarks, speed {:.2f} +- {:.2f} m/s, cost {:.2f}",
-            window_.frames.size(), selected.size(), speed, speed_sigma, cost);
-    return true;
+  StartTrial trial;
+  trial.summary = solveWindow(window_, selected, solveOptions(kStartIterations));
+  trial.landmarks = static_cast<int>(selected.size());
+  trial.speed = window_.frames.back().state.v_odom.norm();
+  trial.speed_sigma = std::sqrt(trial.summary.newest_covariance.block<3, 3>(6, 6).trace());
+  std::vector<double> distances;
+  for (const WindowFeature* feature : selected) {
+    distances.push_back(1.0 / feature->inverse_distance);
   }
-  start_reason_ = fits ? fmt::format("speed uncertain: {:.2f} +- {:.2f} m/s", speed, speed_sigma)
-                       : fmt::format("the motion does not explain the images: {:.1f}", cost);
-  window_.frames.clear();
-  window_.features.clear();
-  window_.prior = {};
-  window_.start.frame_id = -1;
-  features_.clear();
-  return false;
+  if (!distances.empty()) {
+    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+    std::nth_element(distances.begin(), middle, distances.end());
+    trial.median_distance = *middle;
+  }
+  trial.window = window_;
+  return trial;
+}
+
+double VioEstimator::Impl::StartTrial::cost() const {
+  return summary.final_cost / std::max(1, summary.observations);
+}
+
+bool VioEstimator::Impl::StartTrial::fits() const {
+  return summary.ok && summary.has_covariance && summary.observations > kMinStartObservations &&
+         cost() < kMaxStartCost;
+}
+
+bool VioEstimator::Impl::StartTrial::sharp() const {
+  return fits() && speed_sigma < kMaxSpeedSpread * std::max(speed, 0.5);
+}
+
+double VioEstimator::Impl::StartTrial::penalty() const {
+  // Where the data do not tell the scale: the world around a car is a few metres away. The spread
+  // keeps this from outweighing data that do. Per observation, for trials keep different ones.
+  const double away = std::log(median_distance / kUsualDistance) / std::log(kDistanceSpread);
+  return cost() + 0.5 * away * away / summary.observations;
+}
+
+std::vector<NavState> VioEstimator::Impl::withSpeed(const std::vector<NavState>& states,
+                                                    double speed) const {
+  std::vector<NavState> result = states;
+  const Eigen::Vector3d v = states.front().v_odom;
+  const Eigen::Vector3d change = v * (speed / std::max(v.norm(), 1e-6) - 1.0);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    result[i].v_odom += change;
+    result[i].p_odom += toSeconds(start_frames_[i].t_ns - start_frames_.front().t_ns) * change;
+  }
+  return result;
 }
 
 void VioEstimator::Impl::enterWindow(const std::vector<NavState>& states, std::size_t first,

@@ -13,6 +13,36 @@ constexpr int kR = Preintegration::kRotation;
 constexpr int kV = Preintegration::kVelocity;
 constexpr int kG = Preintegration::kBiasGyro;
 constexpr int kA = Preintegration::kBiasAccel;
+
+// How a frame moves when the whole window turns about the vertical, at its point of linearisation.
+Vector15d headingDirection(const WindowFrame& frame) {
+  const NavState& lin = frame.jacobianState();
+  const Vector3d up = Vector3d::UnitZ();
+  Vector15d n = Vector15d::Zero();
+  n.segment<3>(kP) = up.cross(lin.p_odom);
+  n.segment<3>(kR) = lin.R_odom_imu.inverse() * up;
+  n.segment<3>(kV) = up.cross(lin.v_odom);
+  return n;
+}
+
+// Readings are so sharp that Jacobians at an old point of linearisation mislead the solver (they
+// contradict the present state by many sigmas once tilt and bias are corrected). They are taken at
+// the present state instead, and freed of the one thing that this would make up: knowledge of the
+// heading. The rotation columns of the first frame take the difference, so that a turn of the
+// window about the vertical at its points of linearisation has no effect at all; displacements have
+// none by themselves. docs/math/marginalisation.md, eq. (5).
+void holdHeading(const WindowFrame& begin, const WindowFrame& end, Matrix15d& by_begin,
+                 Matrix15d& by_end) {
+  if (begin.linearised) {
+    by_begin.middleCols<3>(kR) *= SO3::rightJacobian(begin.delta.segment<3>(kR));
+  }
+  if (end.linearised) {
+    by_end.middleCols<3>(kR) *= SO3::rightJacobian(end.delta.segment<3>(kR));
+  }
+  const Vector15d n_begin = headingDirection(begin);
+  const Vector15d effect = by_begin * n_begin + by_end * headingDirection(end);
+  by_begin.middleCols<3>(kR) -= effect * n_begin.segment<3>(kR).transpose();
+}
 }  // namespace
 
 Vector15d imuResidual(const WindowFrame& begin, const WindowFrame& end, const Vector3d& gravity,
@@ -23,8 +53,10 @@ Vector15d imuResidual(const WindowFrame& begin, const WindowFrame& end, const Ve
   if (d_res_d_begin != nullptr && d_res_d_end != nullptr) {
     Matrix15d by_begin;
     Matrix15d by_end;
-    (void)imu.residual(begin.jacobianState(), begin.jacobianBias(), end.jacobianState(),
-                       end.jacobianBias(), gravity, &by_begin, &by_end);
+    (void)imu.residual(begin.state, begin.bias, end.state, end.bias, gravity, &by_begin, &by_end);
+    if (begin.linearised || end.linearised) {
+      holdHeading(begin, end, by_begin, by_end);
+    }
     const auto whiten = end.imu_sqrt_information.triangularView<Eigen::Lower>();
     *d_res_d_begin = whiten * by_begin;
     *d_res_d_end = whiten * by_end;

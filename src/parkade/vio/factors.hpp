@@ -9,7 +9,7 @@
 namespace parkade {
 
 // Residuals of single frames and pairs of frames, whitened (unit variance), with Jacobians by the
-// frames' tangents taken at jacobianState(); see docs/math/residuals.md.
+// frames' tangents taken at jacobianState(), but for imuResidual(); see docs/math/residuals.md.
 
 using Vector9d = Eigen::Matrix<double, 9, 1>;
 using Matrix9x15d = Eigen::Matrix<double, 9, 15>;

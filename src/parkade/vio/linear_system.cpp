@@ -12,9 +12,9 @@ namespace parkade {
 namespace {
 
 constexpr int kState = 15;
-// Information that keeps landmarks without parallax invertible: 10 per metre, 1 sigma.
-constexpr double kInverseDistanceInformation = 1e-2;
-constexpr double kMinInverseDistance = 1e-4;
+// Noise may push a far point beyond infinity. Stopping it at zero would pull all far points, and
+// with them the scale, to one side; the projection is smooth there.
+constexpr double kMinInverseDistance = -0.1;
 constexpr double kMaxInverseDistance = 20.0;
 // Whitened error that stands for an observation that cannot be projected at all.
 constexpr double kInvisibleCost = 50.0;
@@ -156,7 +156,10 @@ void LinearSystem::addFeature(const Window& window, WindowFeature& feature) {
   LandmarkBlock landmark;
   landmark.feature = &feature;
   landmark.first = static_cast<int>(couplings_.size());
-  landmark.V(2, 2) = kInverseDistanceInformation;
+  const double off_prior = feature.inverse_distance - kPriorInverseDistance;
+  landmark.V(2, 2) = kPriorInverseDistanceInformation;
+  landmark.b(2) = kPriorInverseDistanceInformation * off_prior;
+  cost_ += 0.5 * kPriorInverseDistanceInformation * off_prior * off_prior;
 
   const auto coupling = [&](int frame) -> Matrix63d& {
     int& slot = slot_[static_cast<std::size_t>(frame)];

@@ -102,6 +102,7 @@ struct VioOptions {
   VioStandstillOptions standstill;
   VioStartUpOptions start_up;
   double gravity = 9.81;
+  double imu_noise_factor = 1.0;
   double max_imu_gap_s = 0.1;
   double max_blind_s = 10.0;
   bool use_wheel = false;
@@ -120,6 +121,8 @@ struct VioOptions {
     v.group("standstill", standstill);
     v.group("start_up", start_up);
     v.field("gravity", gravity, "m/s^2", "Magnitude of gravity.", 9.7, 9.9);
+    v.field("imu_noise_factor", imu_noise_factor, "ratio",
+            "Multiplies the calibration's IMU noise densities: real sensors shake.", 0.1, 100.0);
     v.field("max_imu_gap_s", max_imu_gap_s, "s",
             "Longer steps between IMU readings count as a gap, bridged with raised noise.", 0.005,
             10.0);

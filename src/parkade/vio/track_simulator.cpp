@@ -223,14 +223,22 @@ class TrackMaker {
       if (active_[c].count(point) == 0) fresh.push_back(point);
     }
     random_.shuffle(fresh);
+    // A front end looks for the features of neighbour cameras first.
+    std::stable_partition(fresh.begin(), fresh.end(), [&](std::size_t point) {
+      for (std::size_t other = 0; other < active_.size(); ++other) {
+        if (other != c && active_[other].count(point) != 0)
+          return random_.chance(options_.match_rate);
+      }
+      return false;
+    });
     for (const std::size_t point : fresh) {
       if (static_cast<int>(active_[c].size()) >= options_.tracks_per_camera) break;
       ActiveTrack track;
       track.age = 1;
-      // A feature that a neighbour camera follows is usually matched to it.
+      // A feature that a neighbour camera follows is matched to it.
       for (std::size_t other = 0; other < active_.size() && track.id == 0; ++other) {
         const auto it = active_[other].find(point);
-        if (other != c && it != active_[other].end() && random_.chance(0.8)) {
+        if (other != c && it != active_[other].end()) {
           track.id = it->second.id;
         }
       }

@@ -16,8 +16,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kFarInverseDistance = 0.02;
-constexpr double kMinInverseDistance = 1e-4;
+constexpr double kNoiseMargin = 4.0;  // parallax that noise alone does not make, in its sigmas
+constexpr double kMinInverseDistance = -0.05;  // far points and noise
 constexpr int kIterations = 6;
 
 struct View {
@@ -48,8 +48,9 @@ bool evaluate(const Window& window, const std::vector<View>& views, const Vector
   const VioCamera& anchor_camera =
       window.cameras[static_cast<std::size_t>(views.front().observation->camera)];
   H.setZero();
-  H(2, 2) = 1e-6;
+  H(2, 2) = kPriorInverseDistanceInformation;
   b.setZero();
+  b(2) = kPriorInverseDistanceInformation * (inverse_distance - kPriorInverseDistance);
   worst = 0.0;
   sum = 0.0;
   for (const View& view : views) {
@@ -92,8 +93,11 @@ bool triangulate(const Window& window, WindowFeature& feature, const Triangulati
     cosine = std::min(cosine, anchor.ray_odom.dot(view.ray_odom));
   }
   const double parallax = std::acos(std::clamp(cosine, -1.0, 1.0));
-  double inverse_distance = kFarInverseDistance;
-  if (parallax >= limits.min_parallax) {
+  double inverse_distance = kPriorInverseDistance;
+  const WindowObservation& first = *anchor.observation;
+  const double ray_sigma =
+      first.sigma_px / window.cameras[static_cast<std::size_t>(first.camera)].camera.focalLength();
+  if (parallax >= std::max(limits.min_parallax, kNoiseMargin * std::sqrt(2.0) * ray_sigma)) {
     const Vector3d offset = A.ldlt().solve(rhs);
     const double depth = offset.dot(anchor.ray_odom);
     if (depth > limits.min_distance) inverse_distance = 1.0 / depth;

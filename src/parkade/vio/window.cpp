@@ -11,8 +11,6 @@
 namespace parkade {
 namespace {
 
-constexpr double kMinInverseDistance = 1e-4;
-
 void add(const Vector15d& step, NavState& state, ImuBias& bias) {
   state.p_odom += step.segment<3>(Preintegration::kPosition);
   state.R_odom_imu = state.R_odom_imu * SO3::exp(step.segment<3>(Preintegration::kRotation));
@@ -95,7 +93,7 @@ bool moveAnchor(const Window& window, WindowFeature& feature, const WindowObserv
   const double length = scaled.norm();
   if (length < 1e-3) return false;
   feature.direction = scaled / length;
-  feature.inverse_distance = std::max(feature.inverse_distance / length, kMinInverseDistance);
+  feature.inverse_distance = feature.inverse_distance / length;
   feature.anchor_frame_id = to.frame_id;
   feature.anchor_camera = to.camera;
   return true;

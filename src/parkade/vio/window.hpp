@@ -68,6 +68,11 @@ struct WindowObservation {
   double sigma_px = 1.0;
 };
 
+/// What is known of a landmark's inverse distance before any image: it keeps those without parallax
+/// (a car at rest, pure turning) where landmarks are; a few millimetres of motion outweigh it.
+inline constexpr double kPriorInverseDistance = 0.15;            // 1/m
+inline constexpr double kPriorInverseDistanceInformation = 4.0;  // m^2: 0.5 per metre, 1 sigma
+
 /// A landmark: a direction and an inverse distance in the camera that saw it first. Three degrees
 /// of freedom: two in the plane across the direction, then the inverse distance.
 struct WindowFeature {
@@ -78,7 +83,7 @@ struct WindowFeature {
   int anchor_frame_id = 0;
   int anchor_camera = 0;
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit, anchor camera frame
-  double inverse_distance = 0.0;                         ///< 1/m
+  double inverse_distance = 0.0;                         ///< 1/m; below zero: far, and noise
   int failures = 0;                                      ///< how often its point was thrown away
   int last_seen_id = 0;                                  ///< newest frame that saw it
 };

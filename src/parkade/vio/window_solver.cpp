@@ -134,7 +134,7 @@ Eigen::Matrix3d landmarkCovariance(const Window& window, const WindowFeature& fe
   const VioCamera& anchor_camera = window.cameras[static_cast<std::size_t>(feature.anchor_camera)];
   const PoseMatrices anchor_pose(anchor->state);
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  information(2, 2) = 1e-2;
+  information(2, 2) = kPriorInverseDistanceInformation;
   for (const WindowObservation& o : feature.observations) {
     const WindowFrame* target = window.find(o.frame_id);
     if (target == nullptr) continue;
