@@ -110,6 +110,55 @@ TEST(GenerateTest, RandomGaragesAreValid) {
   }
 }
 
+TEST(GenerateTest, MarkingsLieInsideAndSignsAreUnique) {
+  for (int seed = -1; seed < 50; ++seed) {
+    SCOPED_TRACE(seed);
+    const Garage garage = seed < 0 ? make("paper", 0) : make("random", seed);
+    std::set<int> ids;
+    for (const Marking& marking : garage.markings) {
+      EXPECT_TRUE(ids.insert(marking.id).second);
+      EXPECT_FALSE(marking.polygons.empty());
+      for (const Polygon& polygon : marking.polygons) {
+        EXPECT_GT(signedArea(polygon), 0.0) << marking.id << " " << marking.meaning;
+        for (const Eigen::Vector2d& p : polygon) {
+          EXPECT_TRUE(contains(garage.outline, p)) << marking.id << " " << marking.meaning;
+        }
+      }
+    }
+    std::set<std::string> zones;
+    for (const Pillar& pillar : garage.pillars) {
+      if (pillar.zone_text.empty()) continue;
+      EXPECT_TRUE(zones.insert(pillar.zone_text).second) << pillar.zone_text;
+    }
+    for (const Sign& sign : garage.signs) {
+      if (sign.semantic_class == SemanticClass::kZoneMarker) {
+        EXPECT_EQ(zones.count(sign.text), 1U) << sign.text;
+        EXPECT_GT(sign.height, 0.15);
+        EXPECT_LE(sign.width, 0.95);
+      }
+      EXPECT_NEAR(sign.T_world_sign.rotation().matrix()(2, 1), 1.0, 1e-9);  // y is up
+    }
+    for (const Slot& slot : garage.slots) EXPECT_EQ(zones.count(slot.zone), 1U) << slot.id;
+  }
+}
+
+TEST(GenerateTest, PaperGarageHasEveryKindOfMarkingAndSign) {
+  const Garage garage = make("paper", 0);
+  std::set<SemanticClass> seen;
+  for (const Marking& marking : garage.markings) seen.insert(marking.semantic_class);
+  for (const Sign& sign : garage.signs) seen.insert(sign.semantic_class);
+  for (const SemanticClass expected :
+       {SemanticClass::kSlotLine, SemanticClass::kLaneLine, SemanticClass::kArrow,
+        SemanticClass::kSpeedLimitPaint, SemanticClass::kStopLine, SemanticClass::kCrossing,
+        SemanticClass::kSpeedBump, SemanticClass::kPaintedNumber, SemanticClass::kWheelStop,
+        SemanticClass::kZoneMarker, SemanticClass::kGuideSign, SemanticClass::kSpeedLimitSign}) {
+    EXPECT_EQ(seen.count(expected), 1U) << static_cast<int>(expected);
+  }
+  std::set<SlotMarking> markings;
+  for (const Slot& slot : garage.slots) markings.insert(slot.marking);
+  EXPECT_EQ(markings.size(), 4U);
+}
+
 TEST(GenerateTest, OccupancyIsExactToTheSlot) {
   for (const double share : {0.0, 0.2, 0.6, 0.95, 1.0}) {
     const Garage garage = make("paper", 3, share);

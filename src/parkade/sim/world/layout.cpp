@@ -312,6 +312,8 @@ Layout placeLayout(const LayoutGrid& grid, const GarageStyle& style) {
 }
 
 void buildFromLayout(const Layout& layout, const GarageStyle& style, Garage& garage) {
+  // Owners repaint row by row: some rows carry another kind of lines.
+  std::size_t row_index = 0;
   garage.min = layout.min;
   garage.max = layout.max;
   garage.outline = rectangle({}, layout.min.x(), layout.min.y(), layout.max.x(), layout.max.y());
@@ -321,8 +323,12 @@ void buildFromLayout(const Layout& layout, const GarageStyle& style, Garage& gar
   garage.entrances = layout.entrances;
   addPillars(layout, style, garage);
   for (const Row& row : layout.rows) {
+    const auto other = style.row_markings.find(static_cast<int>(row_index++));
     for (const Bay& bay : row.bays) {
       for (Slot& slot : slotsOfBay(row, bay, style)) {
+        if (other != style.row_markings.end() && bay.kind != BayKind::kAccessible) {
+          slot.marking = other->second;
+        }
         if (!isFree(slot, layout, garage)) continue;
         slot.id = static_cast<int>(garage.slots.size()) + 1;
         garage.slots.push_back(std::move(slot));

@@ -34,4 +34,5 @@ set(WORLD_TESTS
     world/car_mesh_test.cpp
     world/floor_surface_test.cpp
     world/generate_test.cpp
-    world/person_mesh_test.cpp)
+    world/person_mesh_test.cpp
+    world/scene_builder_test.cpp)

@@ -57,6 +57,9 @@ void drawPaint(GarageStyle& style, Random random) {
                                                     SlotMarking::kTShaped, SlotMarking::kTShaped,
                                                     SlotMarking::kLShaped, SlotMarking::kOpen};
   style.marking = random.pick(kMarkings);
+  for (int row = 0; row < 14; ++row) {
+    if (random.chance(0.12)) style.row_markings[row] = random.pick(kMarkings);
+  }
   style.line_width = random.uniform(0.08, 0.16);
   const float white = static_cast<float>(random.uniform(0.55, 0.82));
   style.line_colour = Eigen::Vector3f(white, white, white * 0.97F);
@@ -162,7 +165,13 @@ void drawLight(GarageStyle& style, Random random) {
 GarageStyle makeStyle(const std::string& name, std::uint64_t seed) {
   GarageStyle style;
   style.zone_colours = zonePalette();
-  if (name != "random") return style;
+  if (name != "random") {
+    style.row_markings = {{3, SlotMarking::kTShaped},
+                          {4, SlotMarking::kTShaped},
+                          {5, SlotMarking::kLShaped},
+                          {9, SlotMarking::kOpen}};
+    return style;
+  }
   const Random random = Random(seed).fork("style");
   drawSizes(style, random.fork("sizes"));
   drawPaint(style, random.fork("paint"));

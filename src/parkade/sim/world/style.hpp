@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,7 @@ struct GarageStyle {
 
   // Paint on the floor; colours are linear RGB reflectances.
   SlotMarking marking = SlotMarking::kClosed;
+  std::map<int, SlotMarking> row_markings;  ///< rows that differ, in the layout's order
   double line_width = 0.12;
   Eigen::Vector3f line_colour{0.74F, 0.74F, 0.72F};
   Eigen::Vector3f arrow_colour{0.74F, 0.74F, 0.72F};
