@@ -7,6 +7,9 @@
 #include <utility>
 
 #include "parkade/io/sequence_reader.hpp"
+#ifdef PARKADE_WITH_SIM
+#include "parkade/sim/drive/frame_renderer.hpp"
+#endif
 
 namespace parkade::cli {
 namespace {
@@ -28,10 +31,23 @@ Result<OpenedSource> openFolder(const SourceRequest& request) {
 }
 
 Result<OpenedSource> openSimulator(const SourceRequest& request) {
-  return Error{fmt::format(
-      "{}: the simulator cannot be run from directly in this build; write a sequence with 'parkade "
-      "sim --out SEQ' and give SEQ",
-      request.spec)};
+#ifdef PARKADE_WITH_SIM
+  if (request.start_s > 0.0) {
+    return Error{fmt::format("{}: a simulated drive is read from its beginning", request.spec)};
+  }
+  sim::SimSourceOptions options;
+  options.cameras = request.cameras;
+  options.gray = request.gray;
+  options.duration = request.duration_s;
+  Result<std::unique_ptr<sim::SimSource>> source = sim::openSimSource(request.spec, options);
+  if (!source) return source.error();
+  OpenedSource opened;
+  opened.rig = (*source)->rig();
+  opened.source = std::move(source).value();
+  return opened;
+#else
+  return Error{fmt::format("{}: this program was built without the simulator", request.spec)};
+#endif
 }
 
 }  // namespace

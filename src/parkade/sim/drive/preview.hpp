@@ -8,8 +8,8 @@
 
 namespace parkade::sim {
 
-/// A plan of the garage with the route on it, CV_8UC3: slots (filled where occupied), pillars,
-/// rooms, markings; the path forwards blue and in reverse red, with stops and the car at the start.
-cv::Mat drawPlan(const Simulation& simulation, double px_per_metre = 10.0);
+/// The garage's plan (world/plan_image.hpp) with the route on it: forwards blue, in reverse red,
+/// with stops, and the car every few metres.
+cv::Mat drawRoute(const Simulation& simulation, double px_per_metre = 12.0);
 
 }  // namespace parkade::sim

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Parkade authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Compiles the rigs of config/rigs into the program, so that it finds them wherever it is installed.
+# Compiles the rigs of cars in config/rigs into the program, so that it finds them wherever it is installed.
 file(GLOB RIG_FILES CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/config/rigs/*.yaml)
 list(SORT RIG_FILES)
 set(RIG_PRESETS)
@@ -10,6 +10,9 @@ foreach(RIG_FILE IN LISTS RIG_FILES)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${RIG_FILE})
   get_filename_component(RIG_NAME ${RIG_FILE} NAME_WE)
   file(READ ${RIG_FILE} RIG_TEXT)
+  if(NOT RIG_TEXT MATCHES "\nvehicle:")
+    continue()  # of a recording without a car
+  endif()
   string(APPEND RIG_PRESETS "    {\"${RIG_NAME}\", R\"rig(${RIG_TEXT})rig\"},\n")
   math(EXPR RIG_COUNT "${RIG_COUNT} + 1")
 endforeach()

@@ -74,12 +74,13 @@ class SimSource::Ahead {
   std::thread thread_;
 };
 
-SimSource::SimSource(std::shared_ptr<const Simulation> simulation, FrameFunction draw, int ahead)
-    : simulation_(std::move(simulation)) {
+SimSource::SimSource(std::shared_ptr<const Simulation> simulation, Rig rig, FrameFunction draw,
+                     int ahead)
+    : simulation_(std::move(simulation)), rig_(std::move(rig)) {
   info_.name = simulation_->spec().name();
   info_.start_ns = kSimStartNs;
   info_.end_ns = simulation_->imu().empty() ? kSimStartNs : simulation_->imu().back().t_ns;
-  info_.num_cameras = static_cast<int>(simulation_->trueRig().cameras.size());
+  info_.num_cameras = static_cast<int>(rig_.cameras.size());
   info_.has_wheel = true;
   if (draw) {
     info_.num_frame_sets = static_cast<int>(simulation_->frameTimes().size());

@@ -20,20 +20,24 @@ using FrameFunction = std::function<Result<FrameSet>(int index)>;
 /// bytes for any number of threads.
 class SimSource : public SensorSource {
  public:
-  /// Without a frame function no pictures come. `ahead`: frame sets that wait drawn, at most.
-  SimSource(std::shared_ptr<const Simulation> simulation, FrameFunction draw, int ahead = 3);
+  /// Without a frame function no pictures come. rig: the cameras that it draws, as the reader is
+  /// told of them. `ahead`: frame sets that wait drawn, at most.
+  SimSource(std::shared_ptr<const Simulation> simulation, Rig rig, FrameFunction draw,
+            int ahead = 3);
   ~SimSource() override;
   SimSource(const SimSource&) = delete;
   SimSource& operator=(const SimSource&) = delete;
 
   [[nodiscard]] const SensorSourceInfo& info() const override { return info_; }
   Result<std::optional<SensorEvent>> next() override;
+  [[nodiscard]] const Rig& rig() const { return rig_; }
   [[nodiscard]] const Simulation& simulation() const { return *simulation_; }
 
  private:
   class Ahead;  // the background thread and its queue
 
   std::shared_ptr<const Simulation> simulation_;
+  Rig rig_;
   SensorSourceInfo info_;
   std::unique_ptr<Ahead> ahead_;
   std::size_t next_imu_ = 0;

@@ -44,7 +44,7 @@ std::vector<SensorEvent> readAll(SensorSource& source) {
 
 TEST(SimSource, DeliversEventsInTheOrderOfTime) {
   const auto simulation = simulate("sim:paper/test1?duration=5");
-  SimSource source(simulation, blankFrames(simulation));
+  SimSource source(simulation, simulation->toldRig(), blankFrames(simulation));
   const std::vector<SensorEvent> events = readAll(source);
   int imu = 0, wheel = 0, frames = 0;
   for (std::size_t i = 0; i < events.size(); ++i) {
@@ -70,7 +70,7 @@ TEST(SimSource, DeliversEventsInTheOrderOfTime) {
 
 TEST(SimSource, WithoutPicturesTheRestIsTheSame) {
   const auto simulation = simulate("sim:paper/test1?duration=2&images=0");
-  SimSource source(simulation, {});
+  SimSource source(simulation, simulation->toldRig(), {});
   for (const SensorEvent& event : readAll(source)) {
     EXPECT_FALSE(std::holds_alternative<FrameSet>(event));
   }
@@ -83,7 +83,7 @@ TEST(SimSource, DrawsAFewAheadAndNoMore) {
   const FrameFunction blank = blankFrames(simulation);
   {
     SimSource source(
-        simulation,
+        simulation, simulation->toldRig(),
         [&drawn, blank](int index) {
           ++drawn;
           return blank(index);
@@ -103,7 +103,8 @@ TEST(SimSource, DrawsAFewAheadAndNoMore) {
 
 TEST(SimSource, AFailureEndsTheStreamAndStays) {
   const auto simulation = simulate("sim:paper/test1?duration=2");
-  SimSource source(simulation, [](int) -> Result<FrameSet> { return Error{"no light"}; });
+  SimSource source(simulation, simulation->toldRig(),
+                   [](int) -> Result<FrameSet> { return Error{"no light"}; });
   int errors = 0;
   for (int i = 0; i < 200; ++i) errors += source.next().ok() ? 0 : 1;
   EXPECT_GT(errors, 100);
