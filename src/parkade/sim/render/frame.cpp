@@ -17,6 +17,7 @@ constexpr float kFar = 1.0e4F;
 constexpr int kTile = RayTable::kTile;
 constexpr int kTilePixels = kTile * kTile;
 constexpr int kMaxSamples = 4;
+constexpr float kSharp = 0.35F;     // rougher than this only floors mirror
 constexpr float kFaintest = 0.02F;  // mirror images weaker than this are not traced off the floor
 
 /// The samples of a tile: [pixel * samples + sample].
@@ -116,7 +117,8 @@ Eigen::Vector3f FrameTracer::shadePixel(const SurfaceHit* hits, const Eigen::Vec
       continue;
     }
     if (hits[i].triangle == kNoTriangle) {
-      sum += shader.sky();
+      sum += setup_.open_above ? Eigen::Vector3f(Eigen::Vector3f::Zero())
+                               : shader.missed(eye_, directions[i]);
       continue;
     }
     // Samples on the same surface are shaded as one.
@@ -148,7 +150,7 @@ Eigen::Vector3f FrameTracer::shadePixel(const SurfaceHit* hits, const Eigen::Vec
     const float cosine = -rays[0]->dot(surface.normal);
     const float weight = mirrorReflectance(surface.specular, surface.roughness, cosine) *
                          static_cast<float>(count) / static_cast<float>(samples_);
-    if (weight > best && (surface.is_floor || weight > kFaintest)) {
+    if (weight > best && (surface.is_floor || (weight > kFaintest && surface.roughness < kSharp))) {
       best = weight;
       mirror = makeMirrorRay(shader.lamps(), surface, *rays[0], weight, x, y);
     }

@@ -36,6 +36,7 @@ struct FrameSetup {
   const Moment* moment = nullptr;
   bool reflections = true;
   unsigned mask = kMaskAll;  ///< of primary rays
+  bool open_above = false;   ///< seen from outside: rays that meet nothing are black
   int threads = 1;
 };
 

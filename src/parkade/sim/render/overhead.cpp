@@ -114,6 +114,7 @@ cv::Mat Renderer::renderOverview(const Camera& camera, const SE3& T_world_cam, d
   const auto now = moment(t, std::nullopt);
   FrameSetup setup = setupFor(*now);
   setup.mask = kWithoutCeiling;
+  setup.open_above = true;
   setup.reflections = false;
   const RayTable table(camera, 2, {0.0, 0.0});
   Radiance radiance;

@@ -13,6 +13,7 @@ namespace parkade::sim {
 namespace {
 
 constexpr float kFar = 1.0e4F;
+constexpr float kSmooth = 0.2F;         // roughness
 constexpr float kLampRoom = 0.4F;       // m: what hangs this far below the lamps hides none
 constexpr float kMirrorSpread = 0.01F;  // rad: mirror images of textures are a little soft
 
@@ -51,6 +52,8 @@ MirrorRay makeMirrorRay(const LampMap& lamps, const Surface& surface,
   MirrorRay ray;
   ray.weight = weight;
   ray.from_floor = surface.is_floor;
+  // A lone ray towards lamps sparkles on surfaces that are not smooth.
+  ray.lamps_hidden = surface.is_floor || surface.roughness > kSmooth;
   Eigen::Vector3f n = surface.normal;
   if (surface.is_floor) {
     const float cosine = -direction.dot(n);
@@ -82,7 +85,7 @@ void traceMirrorRays(const FrameSetup& setup, RTCScene moving, const MirrorRay* 
     for (int k = 0; k < lanes; ++k) {
       floors_only = floors_only && rays[begin + k].from_floor;
       // The floor's image of lamps comes from their map, without the noise of a few rays.
-      packet.rays.ray.mask[k] = rays[begin + k].from_floor ? kMaskAll & ~kMaskLamp : kMaskAll;
+      packet.rays.ray.mask[k] = rays[begin + k].lamps_hidden ? kMaskAll & ~kMaskLamp : kMaskAll;
       packet.set(k, rays[begin + k].origin, rays[begin + k].direction, kFar);
     }
     const RTCScene scene = floors_only ? moving : setup.moment->scene.get();
@@ -90,7 +93,7 @@ void traceMirrorRays(const FrameSetup& setup, RTCScene moving, const MirrorRay* 
     for (int k = 0; k < lanes; ++k) {
       const MirrorRay& ray = rays[begin + k];
       const SurfaceHit hit = hitOf(*setup.tracer, packet, k);
-      Eigen::Vector3f radiance = setup.shader->sky();
+      Eigen::Vector3f radiance = Eigen::Vector3f::Zero();
       if (hit.triangle != kNoTriangle) {
         const SurfaceHit* hits = &hit;
         const Eigen::Vector3f* direction = &ray.direction;
@@ -98,6 +101,8 @@ void traceMirrorRays(const FrameSetup& setup, RTCScene moving, const MirrorRay* 
         setup.shader->shade(&hits, &direction, 1, ray.origin, kMirrorSpread, 1, *setup.moment,
                             surface);
         radiance = surface.radiance;
+      } else {
+        radiance = setup.shader->missed(ray.origin, ray.direction);
       }
       if (ray.from_floor) {
         const float reached = hit.triangle == kNoTriangle ? kFar : hit.t * ray.direction.z();

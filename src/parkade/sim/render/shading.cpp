@@ -57,13 +57,27 @@ Shader::Shader(const Scene& scene, const StaticTracer& tracer, const BakedLight&
     m.is_floor = material.is_floor && scene.floor != nullptr;
     materials_.push_back(m);
   }
-  // Gaps in the model show a wall's usual radiance; the open entrance shows the sky.
-  background_ = Eigen::Vector3f::Constant(0.2F * lux * kInvPi);
+  background_ = Eigen::Vector3f::Constant(0.02F * lux * kInvPi);
   const double scale = light.raw_floor_lux > 0.0 ? light.mean_floor_lux / light.raw_floor_lux : 1.0;
   sky_ = scene.daylight.present
              ? Eigen::Vector3f(Eigen::Vector3f(0.95F, 1.0F, 1.08F) * kInvPi *
                                scene.daylight.luminous_exitance * static_cast<float>(scale))
              : background_;
+}
+
+Eigen::Vector3f Shader::missed(const Eigen::Vector3f& origin,
+                               const Eigen::Vector3f& direction) const {
+  const Scene::Daylight& day = scene_.daylight;
+  const float approach = direction.dot(day.normal);
+  if (!day.present || approach >= 0.0F) {
+    return background_;
+  }
+  const float t = (day.center - origin).dot(day.normal) / approach;
+  const Eigen::Vector3f q = origin + t * direction - day.center;
+  const Eigen::Vector3f across = Eigen::Vector3f::UnitZ().cross(day.normal).normalized();
+  const bool through =
+      t > 0.0F && std::abs(q.z()) < 0.5F * day.height && std::abs(q.dot(across)) < 0.5F * day.width;
+  return through ? sky_ : background_;
 }
 
 Eigen::Vector3f Shader::floorLux(float x, float y, const Moment& moment) const {

@@ -73,9 +73,10 @@ class Shader {
   /// Class of a hit at the exact place.
   [[nodiscard]] SemanticClass labelOf(const SurfaceHit& hit, const Eigen::Vector3f& position,
                                       const Moment& moment) const;
-  /// Radiance of rays that leave the garage.
-  [[nodiscard]] const Eigen::Vector3f& background() const { return background_; }
-  [[nodiscard]] const Eigen::Vector3f& sky() const { return sky_; }
+  /// Radiance of a ray that meets nothing: the sky where it leaves through the daylight's opening,
+  /// dark elsewhere (gaps of the model).
+  [[nodiscard]] Eigen::Vector3f missed(const Eigen::Vector3f& origin,
+                                       const Eigen::Vector3f& direction) const;
   /// Height of the floor below a place, m.
   [[nodiscard]] float floorHeight(const Eigen::Vector3f& p) const {
     return light_.floor_z[light_.floor_grid.index(p.x(), p.y())];
