@@ -112,8 +112,8 @@ class Renderer {
   RenderOptions options_;
   EmbreeDevice device_;
   StaticTracer tracer_;
+  double bake_seconds_ = 0.0;  ///< before light_, whose making sets it
   BakedLight light_;
-  double bake_seconds_ = 0.0;
   Shader shader_;
   MomentMaker moments_;
   SensorModel sensor_;
