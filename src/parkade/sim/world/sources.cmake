@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Parkade authors
 # SPDX-License-Identifier: Apache-2.0
-list(APPEND SIM_PRIVATE_DEPS opencv_imgproc)
+list(APPEND SIM_PRIVATE_DEPS opencv_imgproc nlohmann_json::nlohmann_json)
 set(WORLD_SOURCES
     garage.cpp
     world/aisle_graph.cpp
@@ -11,6 +11,7 @@ set(WORLD_SOURCES
     world/fittings.cpp
     world/floor_build.cpp
     world/floor_surface.cpp
+    world/garage_json.cpp
     world/generate.cpp
     world/grids.cpp
     world/layout.cpp
@@ -33,6 +34,7 @@ set(WORLD_SOURCES
 set(WORLD_TESTS
     world/car_mesh_test.cpp
     world/floor_surface_test.cpp
+    world/garage_json_test.cpp
     world/generate_test.cpp
     world/person_mesh_test.cpp
     world/scene_builder_test.cpp)
