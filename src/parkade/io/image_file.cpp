@@ -16,7 +16,6 @@ namespace {
 using namespace std::string_view_literals;
 constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n"sv;
 constexpr std::string_view kJpegSignature = "\xFF\xD8\xFF"sv;
-constexpr std::string_view kJpegEnd = "\xFF\xD9"sv;
 
 // PNG: chunks of length, type, data, checksum (ISO/IEC 15948, 5.3) up to IEND.
 Status checkPng(std::string_view bytes) {
@@ -33,11 +32,31 @@ Status checkPng(std::string_view bytes) {
   return Error{fmt::format("the PNG file is cut off after {} bytes", bytes.size())};
 }
 
-// JPEG: the end mark is the last thing in the file, but for zeros that some recorders pad with.
+// JPEG: segments of marker, length, data (ITU-T T.81, B.1.1) up to the end mark EOI. After SOS
+// comes coded data, in which 0xFF is followed by 0 or a restart mark; whatever else follows is the
+// next marker. A thumbnail with an end mark of its own lies inside a segment and is stepped over.
 Status checkJpeg(std::string_view bytes) {
-  while (!bytes.empty() && bytes.back() == '\0') bytes.remove_suffix(1);
-  if (bytes.size() > kJpegEnd.size() && bytes.substr(bytes.size() - kJpegEnd.size()) == kJpegEnd) {
-    return {};
+  const auto byteAt = [&bytes](std::size_t i) { return static_cast<std::uint8_t>(bytes[i]); };
+  constexpr std::uint8_t kEndOfImage = 0xD9;
+  constexpr std::uint8_t kStartOfScan = 0xDA;
+  std::size_t position = 2;  // behind the start mark
+  bool coded = false;
+  while (true) {
+    position = bytes.find('\xFF', position);
+    if (position == std::string_view::npos || position + 1 >= bytes.size()) break;
+    const std::uint8_t marker = byteAt(position + 1);
+    if (marker == kEndOfImage) return {};
+    const bool restart = marker >= 0xD0 && marker <= 0xD7;
+    if (marker == 0xFF) {  // a fill byte
+      position += 1;
+    } else if (restart || (coded && marker == 0)) {
+      position += 2;
+    } else {
+      if (position + 3 >= bytes.size()) break;
+      const std::size_t length = byteAt(position + 2) << 8 | byteAt(position + 3);
+      coded = marker == kStartOfScan;
+      position += 2 + length;
+    }
   }
   return Error{fmt::format("the JPEG file is cut off after {} bytes", bytes.size())};
 }

@@ -61,6 +61,19 @@ TEST(ImageFile, FindsEveryCutOffFile) {
   }
 }
 
+TEST(ImageFile, AThumbnailsEndIsNotThePicturesEnd) {
+  const std::string whole = *encodeImage(noise(CV_8UC1), {});
+  // An APP1 segment with a whole small JPEG in it, right behind the start mark.
+  const std::string inner = *encodeImage(cv::Mat(8, 8, CV_8UC1, cv::Scalar(9)), {});
+  const std::size_t length = inner.size() + 2;
+  const std::string segment = std::string("\xFF\xE1") + static_cast<char>(length >> 8) +
+                              static_cast<char>(length & 0xFF) + inner;
+  const std::string bytes = whole.substr(0, 2) + segment + whole.substr(2);
+  EXPECT_TRUE(checkImageBytes(bytes).ok());
+  EXPECT_TRUE(checkImageBytes(bytes + "notes of the recorder").ok());
+  EXPECT_FALSE(checkImageBytes(bytes.substr(0, bytes.size() - 40)).ok());
+}
+
 TEST(ImageFile, FindsDamagedPngAndForeignFiles) {
   const TemporaryFolder folder;
   std::string bytes = *encodeImage(noise(CV_8UC1), {true, 92, 3});
