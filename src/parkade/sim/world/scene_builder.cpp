@@ -3,6 +3,7 @@
 #include "parkade/sim/world/scene_builder.hpp"
 
 #include "parkade/core/check.hpp"
+#include "parkade/sim/world/agents.hpp"
 #include "parkade/sim/world/car_mesh.hpp"
 #include "parkade/sim/world/parked_cars.hpp"
 #include "parkade/sim/world/structure.hpp"
@@ -51,6 +52,8 @@ Scene buildScene(const Garage& garage, const SceneOptions& options, const EgoInp
     scene.ego_mesh = static_cast<int>(scene.meshes.size());
     scene.meshes.push_back(egoCarMesh(*ego.shape, materials));
   }
+  addAgents(garage, options.vehicles, options.pedestrians, ego, materials, random.fork("agents"),
+            scene);
   scene.floor = buildFloor(garage, options.wear, options.dirt);
   return scene;
 }

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 list(APPEND SIM_PRIVATE_DEPS opencv_imgproc nlohmann_json::nlohmann_json)
 set(WORLD_SOURCES
+    world/agent_motion.cpp
+    world/agents.cpp
     garage.cpp
     world/aisle_graph.cpp
     world/aisle_paint.cpp
@@ -32,6 +34,7 @@ set(WORLD_SOURCES
     world/stroke_font.cpp
     world/style.cpp)
 set(WORLD_TESTS
+    world/agents_test.cpp
     world/car_mesh_test.cpp
     world/floor_surface_test.cpp
     world/garage_json_test.cpp
