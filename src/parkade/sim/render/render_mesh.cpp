@@ -154,8 +154,16 @@ bool cutLongEdges(RenderMesh& mesh, const std::vector<float>& limit_of_material)
     }
     // Only the longer edges in one pass: thin triangles become well shaped ones.
     const float longest = *std::max_element(length.begin(), length.end());
+    const float limit = limit_of_material[t.material];
+    // Light hardly changes across a thin face (pipes, ducts, stripes): it gets longer pieces.
+    const Eigen::Vector3f across = (mesh.positions[t.v[1]] - mesh.positions[t.v[0]])
+                                       .cross(mesh.positions[t.v[2]] - mesh.positions[t.v[0]]);
+    constexpr float kThin = 0.25F;
+    constexpr float kLonger = 3.0F;
+    const bool thin = across.norm() < kThin * limit * longest;
+    const float longest_allowed = thin ? kLonger * limit : limit;
     for (int k = 0; k < 3; ++k) {
-      if (length[k] > limit_of_material[t.material] && length[k] > 0.8F * longest) {
+      if (length[k] > longest_allowed && length[k] > 0.8F * longest) {
         midpoints.try_emplace(edgeOf(t, k), 0U);
       }
     }
