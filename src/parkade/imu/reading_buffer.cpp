@@ -54,6 +54,25 @@ std::vector<ImuReading> ReadingBuffer::between(TimeNs begin_ns, TimeNs end_ns) c
   return result;
 }
 
+TimeNs ReadingBuffer::spacingAt(TimeNs t_ns) const {
+  PARKADE_CHECK(!readings_.empty(), "no IMU reading at {}", t_ns);
+  const std::size_t after = indexAfter(t_ns);
+  if (after == 0) return readings_.front().t_ns - t_ns;
+  if (after == readings_.size()) return t_ns - readings_.back().t_ns;
+  return readings_[after].t_ns - readings_[after - 1].t_ns;
+}
+
+Preintegration ReadingBuffer::sumBetween(TimeNs begin_ns, TimeNs end_ns, const ImuNoise& noise,
+                                         const ImuBias& bias, TimeNs gap_ns) const {
+  Preintegration sum(noise, bias);
+  const std::vector<ImuReading> readings = between(begin_ns, end_ns);
+  for (std::size_t i = 0; i + 1 < readings.size(); ++i) {
+    const TimeNs middle = readings[i].t_ns + (readings[i + 1].t_ns - readings[i].t_ns) / 2;
+    sum.integrate(readings[i], readings[i + 1], spacingAt(middle) > gap_ns ? 0 : gap_ns);
+  }
+  return sum;
+}
+
 void ReadingBuffer::dropBefore(TimeNs t_ns) {
   // The last reading at or before t_ns is still needed to interpolate there.
   while (readings_.size() > 1 && readings_[1].t_ns <= t_ns) readings_.pop_front();

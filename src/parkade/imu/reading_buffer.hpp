@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "parkade/imu/imu_types.hpp"
+#include "parkade/imu/preintegration.hpp"
 
 namespace parkade {
 
@@ -20,6 +21,12 @@ class ReadingBuffer {
   /// An end before the first or after the last reading holds that one. Empty where no reading is
   /// known.
   [[nodiscard]] std::vector<ImuReading> between(TimeNs begin_ns, TimeNs end_ns) const;
+  /// The same, summed up; where the readings themselves lie further apart than gap_ns, whatever was
+  /// interpolated between them counts as a gap.
+  [[nodiscard]] Preintegration sumBetween(TimeNs begin_ns, TimeNs end_ns, const ImuNoise& noise,
+                                          const ImuBias& bias, TimeNs gap_ns) const;
+  /// Time between the readings around an instant, or to the nearest one beyond the ends.
+  [[nodiscard]] TimeNs spacingAt(TimeNs t_ns) const;
   /// The reading at an instant, interpolated or held.
   [[nodiscard]] ImuReading at(TimeNs t_ns) const;
 

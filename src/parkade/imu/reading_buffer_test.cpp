@@ -41,6 +41,22 @@ TEST(ReadingBuffer, HoldsBeyondItsEnds) {
   EXPECT_TRUE(ReadingBuffer().between(0, 10).empty());
 }
 
+TEST(ReadingBuffer, GapStaysAGapWhenItIsCut) {
+  ReadingBuffer buffer;
+  (void)buffer.add({0, {}, {}});
+  (void)buffer.add({10 * kNsPerMs, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()});
+  (void)buffer.add({510 * kNsPerMs, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()});
+  const TimeNs limit = 100 * kNsPerMs;
+  const auto gapOf = [&](int begin_ms, int end_ms) {
+    return buffer.sumBetween(begin_ms * kNsPerMs, end_ms * kNsPerMs, ImuNoise{}, ImuBias{}, limit)
+        .gapDuration();
+  };
+  EXPECT_DOUBLE_EQ(gapOf(0, 10), 0.0);
+  EXPECT_NEAR(gapOf(100, 150), 0.05, 1e-9);
+  EXPECT_NEAR(gapOf(0, 110), 0.1, 1e-9);
+  EXPECT_EQ(buffer.spacingAt(200 * kNsPerMs), 500 * kNsPerMs);
+}
+
 TEST(ReadingBuffer, RefusesStaleAndBrokenReadings) {
   ReadingBuffer buffer = ramp();
   EXPECT_FALSE(buffer.add({40, {}, {}}));

@@ -85,10 +85,8 @@ PoseEstimate VioEstimator::Impl::addTracks(const TrackSet& tracks) {
 }
 
 void VioEstimator::Impl::setImu(WindowFrame& frame, TimeNs begin_ns, const ImuBias& bias) const {
-  Preintegration sum(noise_, bias);
   if (readings_.empty()) return;
-  sum.integrate(readings_.between(begin_ns, frame.t_ns), gap_ns_);
-  // Readings that ended long before the frame are a gap as well.
+  const Preintegration sum = readings_.sumBetween(begin_ns, frame.t_ns, noise_, bias, gap_ns_);
   frame.imu_tail_held = readings_.lastTime() < frame.t_ns;
   frame.imu = sum;
   frame.imu_sqrt_information = sqrtInformation(sum);
@@ -147,7 +145,13 @@ SolveOptions VioEstimator::Impl::solveOptions(int max_iterations) const {
 
 void VioEstimator::Impl::optimise(int max_iterations) {
   const std::vector<WindowFeature*> selected = features_.select(window_);
-  const SolveSummary summary = solveWindow(window_, selected, solveOptions(max_iterations));
+  // A car at rest teaches nothing about where it was: what it sees again and again is only noise.
+  const int rest = still_ ? window_.indexOf(still_anchor_id_) : -1;
+  const bool held = rest >= 0 && rest + 1 < static_cast<int>(window_.frames.size());
+  const SolveSummary summary =
+      held ? solveAtRest(window_, selected, static_cast<std::size_t>(rest) + 1,
+                         solveOptions(max_iterations))
+           : solveWindow(window_, selected, solveOptions(max_iterations));
   if (summary.has_covariance) newest_covariance_ = summary.newest_covariance;
   int keyframes = 0;
   for (const WindowFrame& frame : window_.frames) keyframes += frame.keyframe ? 1 : 0;

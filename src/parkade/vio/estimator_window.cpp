@@ -84,8 +84,8 @@ void VioEstimator::Impl::removeFrame(std::size_t index) {
     return;
   }
   history_.addDropped(frame, before);
-  Preintegration sum(noise_, before.bias);
-  sum.integrate(readings_.between(before.t_ns, after.t_ns), gap_ns_);
+  const Preintegration sum =
+      readings_.sumBetween(before.t_ns, after.t_ns, noise_, before.bias, gap_ns_);
   dropFrame(window_, frame.id, sum);
 }
 

@@ -47,6 +47,14 @@ struct Backup {
   }
 };
 
+// The newest frame's marginal needs only the last block of the Cholesky factor.
+Matrix15d newestCovariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& llt) {
+  const Matrix15d corner = llt.matrixLLT().bottomRightCorner<kState, kState>();
+  const Matrix15d corner_inverse =
+      corner.triangularView<Eigen::Lower>().solve(Matrix15d::Identity());
+  return corner_inverse.transpose() * corner_inverse;
+}
+
 }  // namespace
 
 SolveSummary solveWindow(Window& window, const std::vector<WindowFeature*>& features,
@@ -83,13 +91,9 @@ SolveSummary solveWindow(Window& window, const std::vector<WindowFeature*>& feat
       window.frames[i].apply(step.segment<kState>(kState * static_cast<Eigen::Index>(i)));
     }
     const double decrease = -0.5 * gradient_dot_step;
-    // The newest frame's marginal needs only the last block of the Cholesky factor. Damping would
-    // pass for knowledge of where the whole window is.
+    // Damping would pass for knowledge of where the whole window is.
     if (damping == 0.0) {
-      const Matrix15d corner = llt.matrixLLT().bottomRightCorner<kState, kState>();
-      const Matrix15d corner_inverse =
-          corner.triangularView<Eigen::Lower>().solve(Matrix15d::Identity());
-      summary.newest_covariance = corner_inverse.transpose() * corner_inverse;
+      summary.newest_covariance = newestCovariance(llt);
       summary.has_covariance = true;
     }
     summary.ok = true;
@@ -107,6 +111,41 @@ SolveSummary solveWindow(Window& window, const std::vector<WindowFeature*>& feat
       damping = std::max(1e-4, 10.0 * damping);
       if (damping > kMaxDamping) break;
     }
+  }
+  return summary;
+}
+
+SolveSummary solveAtRest(Window& window, const std::vector<WindowFeature*>& features,
+                         std::size_t first_free, const SolveOptions& options) {
+  SolveSummary summary;
+  FactorSelection selection = FactorSelection::all(window);
+  LinearSystem system(options.huber, options.still);
+  const auto free_rows = kState * static_cast<Eigen::Index>(window.frames.size() - first_free);
+  summary.initial_cost = system.linearise(window, selection);
+  for (; summary.iterations < options.max_iterations; ++summary.iterations) {
+    system.reduce(0.0);
+    const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> llt(
+        system.reducedH().bottomRightCorner(free_rows, free_rows));
+    if (llt.info() != Eigen::Success) return summary;
+    const Eigen::VectorXd step = -llt.solve(system.reducedB().tail(free_rows));
+    if (!step.allFinite()) return summary;
+    for (std::size_t i = first_free; i < window.frames.size(); ++i) {
+      window.frames[i].apply(
+          step.segment<kState>(kState * static_cast<Eigen::Index>(i - first_free)));
+    }
+    const double promised = -0.5 * system.gradient().tail(free_rows).dot(step);
+    summary.final_cost = system.linearise(window, selection);
+    if (promised < options.min_decrease) break;
+  }
+  summary.ok = true;
+  selection.features = features;
+  system.linearise(window, selection);
+  summary.observations = system.numObservations();
+  system.reduce(0.0);
+  const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> llt(system.reducedH());
+  if (llt.info() == Eigen::Success) {
+    summary.newest_covariance = newestCovariance(llt);
+    summary.has_covariance = true;
   }
   return summary;
 }

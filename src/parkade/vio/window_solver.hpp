@@ -33,6 +33,12 @@ struct SolveSummary {
 SolveSummary solveWindow(Window& window, const std::vector<WindowFeature*>& features,
                          const SolveOptions& options);
 
+/// The same for a car at rest: only the frames from `first_free` on move, by their readings and the
+/// rest alone; landmarks and the frames before stay as they are. The covariance is still that of the
+/// whole window with the given landmarks.
+SolveSummary solveAtRest(Window& window, const std::vector<WindowFeature*>& features,
+                         std::size_t first_free, const SolveOptions& options);
+
 /// Whitened distance of an observation from its landmark's projection; infinity where it does not
 /// project.
 double whitenedError(const Window& window, const WindowFeature& feature,
