@@ -76,7 +76,7 @@ Status writePictures(std::shared_ptr<const sim::Simulation> simulation, const st
   write("labels_front.png", colouredLabels((*renderer)->labels(index, 0)));
   constexpr int kOverviewPx = 1200;
   write("garage.jpg", (*renderer)->overview(kOverviewPx));
-  write("plan.png", sim::drawRoute(*simulation));
+  write("plan.jpg", sim::drawRoute(*simulation));
   return status;
 }
 

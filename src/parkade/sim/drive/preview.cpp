@@ -10,7 +10,7 @@
 namespace parkade::sim {
 namespace {
 
-const cv::Scalar kForwards(200, 80, 20);
+const cv::Scalar kForwards(255, 160, 60);
 const cv::Scalar kReverse(40, 40, 220);
 const cv::Scalar kStop(0, 140, 255);
 
