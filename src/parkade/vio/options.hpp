@@ -112,8 +112,6 @@ struct VioOptions {
   double side_slip_sigma = 0.05;
   bool use_planar = false;
   double planar_sigma = 0.03;
-  bool refine_extrinsics = false;
-  bool refine_time_offset = false;
 
   void visit(OptionVisitor& v) {
     v.group("window", window);
@@ -139,10 +137,6 @@ struct VioOptions {
     v.field("use_planar", use_planar, "Hold the speed across the car's own floor plane near zero.");
     v.field("planar_sigma", planar_sigma, "m/s", "Speed across the floor plane, 1 sigma.", 1e-4,
             10.0);
-    v.field("refine_extrinsics", refine_extrinsics,
-            "Refine where each camera sits on the car while driving.");
-    v.field("refine_time_offset", refine_time_offset,
-            "Refine each camera's time offset while driving.");
   }
 };
 
