@@ -36,7 +36,7 @@ Status checkPng(std::string_view bytes) {
 // comes coded data, in which 0xFF is followed by 0 or a restart mark; whatever else follows is the
 // next marker. A thumbnail with an end mark of its own lies inside a segment and is stepped over.
 Status checkJpeg(std::string_view bytes) {
-  const auto byteAt = [&bytes](std::size_t i) { return static_cast<std::uint8_t>(bytes[i]); };
+  const auto byte_at = [&bytes](std::size_t i) { return static_cast<std::uint8_t>(bytes[i]); };
   constexpr std::uint8_t kEndOfImage = 0xD9;
   constexpr std::uint8_t kStartOfScan = 0xDA;
   std::size_t position = 2;  // behind the start mark
@@ -44,7 +44,7 @@ Status checkJpeg(std::string_view bytes) {
   while (true) {
     position = bytes.find('\xFF', position);
     if (position == std::string_view::npos || position + 1 >= bytes.size()) break;
-    const std::uint8_t marker = byteAt(position + 1);
+    const std::uint8_t marker = byte_at(position + 1);
     if (marker == kEndOfImage) return {};
     const bool restart = marker >= 0xD0 && marker <= 0xD7;
     if (marker == 0xFF) {  // a fill byte
@@ -53,7 +53,7 @@ Status checkJpeg(std::string_view bytes) {
       position += 2;
     } else {
       if (position + 3 >= bytes.size()) break;
-      const std::size_t length = byteAt(position + 2) << 8 | byteAt(position + 3);
+      const std::size_t length = byte_at(position + 2) << 8 | byte_at(position + 3);
       coded = marker == kStartOfScan;
       position += 2 + length;
     }

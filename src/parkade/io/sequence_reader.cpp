@@ -141,7 +141,7 @@ void SequenceReader::cut(const SequenceReaderOptions& options) {
     begin = std::min(begin, rows.front().t_ns);
     end = std::max(end, rows.back().t_ns);
   };
-  const auto spanOfAll = [this, &span](TimeNs& begin, TimeNs& end) {
+  const auto span_of_all = [this, &span](TimeNs& begin, TimeNs& end) {
     begin = std::numeric_limits<TimeNs>::max();
     end = std::numeric_limits<TimeNs>::min();
     span(imu_, begin, end);
@@ -151,13 +151,13 @@ void SequenceReader::cut(const SequenceReaderOptions& options) {
   };
   TimeNs begin = 0;
   TimeNs end = 0;
-  spanOfAll(begin, end);
+  span_of_all(begin, end);
   const TimeNs from = begin + fromSeconds(options.start_s);
   const TimeNs to = options.duration_s > 0.0 ? from + fromSeconds(options.duration_s) : end;
   keepBetween(imu_, from, to);
   keepBetween(wheel_, from, to);
   keepBetween(frames_, from, to);
-  spanOfAll(info_.start_ns, info_.end_ns);
+  span_of_all(info_.start_ns, info_.end_ns);
   info_.num_cameras = static_cast<int>(rig_.cameras.size());
   info_.num_frame_sets = static_cast<int>(frames_.size());
   info_.has_wheel = !wheel_.empty();

@@ -115,9 +115,8 @@ SequenceState inspectSequence(const std::string& path) {
   const Result<std::string> marker = readFile(joinPath(path, kUnfinishedFile));
   if (marker) {
     state.begun = true;
-    const std::string text = *marker;
     const std::size_t header = std::string_view(kMarkerText).size();
-    if (text.size() >= header) state.fingerprint = text.substr(header);
+    if (marker->size() >= header) state.fingerprint = marker->substr(header);
     return state;
   }
   for (const char* sensor : {"imu0", "cam0"}) {
