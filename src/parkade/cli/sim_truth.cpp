@@ -11,6 +11,7 @@
 #include "parkade/io/file.hpp"
 #include "parkade/io/sequence_writer.hpp"
 #include "parkade/io/trajectory_io.hpp"
+#include "parkade/sim/world/garage_json.hpp"
 
 namespace parkade::cli {
 Status writeTruth(const sim::Simulation& simulation, const std::string& sequence) {
@@ -27,6 +28,7 @@ Status writeTruth(const sim::Simulation& simulation, const std::string& sequence
   Status status = writeTrajectory(joinPath(truth, "trajectory.tum"), poses, TrajectoryFormat::kTum);
   if (status) status = writeGroundTruth(sequence, states);
   if (status) status = writeRig(simulation.trueRig(), joinPath(truth, "rig.yaml"));
+  if (status) status = sim::writeGarageTruth(simulation.garage(), joinPath(truth, "garage.json"));
   return status;
 }
 

@@ -20,6 +20,7 @@ std::shared_ptr<const Scene> makeScene(const Simulation& simulation) {
   options.vehicles = spec.cars;
   options.pedestrians = spec.people;
   options.seed = spec.garage_seed;
+  options.agents_seed = spec.seed;
   EgoInput ego;
   ego.shape = simulation.trueRig().vehicle;
   ego.pose = [&simulation](double t) {

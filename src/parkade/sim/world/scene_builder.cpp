@@ -52,7 +52,8 @@ Scene buildScene(const Garage& garage, const SceneOptions& options, const EgoInp
     scene.ego_mesh = static_cast<int>(scene.meshes.size());
     scene.meshes.push_back(egoCarMesh(*ego.shape, materials));
   }
-  addAgents(garage, options.vehicles, options.pedestrians, ego, materials, random.fork("agents"),
+  addAgents(garage, options.vehicles, options.pedestrians, ego, materials,
+            Random(garage.seed).fork("agents", static_cast<std::uint64_t>(options.agents_seed)),
             scene);
   scene.floor = buildFloor(garage, options.wear, options.dirt);
   return scene;

@@ -22,6 +22,7 @@ struct SceneOptions {
   double dirt = 1.0;
   bool furniture = true;
   int seed = 0;
+  int agents_seed = 0;
 
   void visit(OptionVisitor& v) {
     v.field("lux", lux, "lx", "Mean illuminance of the open floor.", 0.1, 1e5);
@@ -30,7 +31,8 @@ struct SceneOptions {
     v.field("wear", wear, "", "Times the garage's own wear of paint; 0: fresh.", 0.0, 5.0);
     v.field("dirt", dirt, "", "Times the garage's own dirt; 0: clean.", 0.0, 5.0);
     v.field("furniture", furniture, "Ducts, pipes, posters, extinguishers and the like.");
-    v.field("seed", seed, "", "Of bodies and places of parked cars and of what moves.", 0, 1e9);
+    v.field("seed", seed, "", "Of bodies and places of parked cars.", 0, 1e9);
+    v.field("agents_seed", agents_seed, "", "Of what moves.", 0, 1e9);
   }
 };
 
