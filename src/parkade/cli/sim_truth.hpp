@@ -12,7 +12,7 @@ namespace parkade::cli {
 
 // The truth of a recording (docs/simulator.md, "What is written"); every file whole or not at all.
 
-/// truth/trajectory.tum, truth/rig.yaml and
+/// truth/trajectory.tum, truth/rig.yaml, truth/garage.json and
 /// mav0/state_groundtruth_estimate0/data.csv below the sequence's folder.
 Status writeTruth(const sim::Simulation& simulation, const std::string& sequence);
 
