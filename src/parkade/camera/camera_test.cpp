@@ -137,6 +137,7 @@ TEST_P(EveryModel, PixelsComeBackWithinAMillionthPixel) {
       worst = std::max(worst, (back - Eigen::Vector2d(u, v)).norm());
     }
   }
+  RecordProperty("worst_round_trip_px", std::to_string(worst * 1e9) + "e-9");
   EXPECT_LE(worst, 1e-6);
   if (GetParam().whole_image) {
     EXPECT_EQ(valid, all);

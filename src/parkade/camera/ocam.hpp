@@ -21,11 +21,12 @@ namespace parkade {
 /// The toolbox counts (row, column) and turns the camera frame accordingly; its affine c, d, e and
 /// centre xc, yc become A = [1 e; d c], cx = yc, cy = xc: see fromToolbox().
 ///
-/// Two deviations make the model consistent. The toolbox fits a second polynomial for rays,
-/// z = a_0 + a_1 rho + ... ("cam2world"), which agrees with the first to some hundredths of a pixel
-/// only. Here un-projection is the exact inverse of projection: Newton's method on world2cam, for
-/// which cam2world is just the start. And rho(-90 deg), some thousandths of a pixel where it should
-/// be 0, is blended away over the innermost 0.1 rad, so that the axis meets the centre.
+/// Two deviations make the model consistent (docs/math/cameras.md). The toolbox fits a second
+/// polynomial for rays, z = a_0 + a_1 rho + ... ("cam2world"), which agrees with the first only as
+/// far as that fit goes. Here un-projection is the exact inverse of projection: Newton's method on
+/// world2cam, for which cam2world is just the start. And rho(-90 deg), some thousandths of a pixel
+/// where it should be 0, is blended away over the innermost 0.1 rad, so that the axis meets the
+/// centre.
 ///
 /// Valid up to the angle where rho stops growing.
 class Ocam {
