@@ -34,8 +34,8 @@ SolveSummary solveWindow(Window& window, const std::vector<WindowFeature*>& feat
                          const SolveOptions& options);
 
 /// The same for a car at rest: only the frames from `first_free` on move, by their readings and the
-/// rest alone; landmarks and the frames before stay as they are. The covariance is still that of the
-/// whole window with the given landmarks.
+/// rest alone; landmarks and the frames before stay as they are. The covariance is still that of
+/// the whole window with the given landmarks.
 SolveSummary solveAtRest(Window& window, const std::vector<WindowFeature*>& features,
                          std::size_t first_free, const SolveOptions& options);
 
