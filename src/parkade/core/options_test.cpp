@@ -38,7 +38,10 @@ struct TestOptions {
 class OptionsTest : public ::testing::Test {
  protected:
   std::string write(const std::string& text) {
-    const std::string path = ::testing::TempDir() + "parkade_options_test.yaml";
+    // Cases run side by side in programs of their own: each has its own file.
+    const std::string path = ::testing::TempDir() + "parkade_options_" +
+                             ::testing::UnitTest::GetInstance()->current_test_info()->name() +
+                             ".yaml";
     std::ofstream(path) << text;
     return path;
   }
