@@ -12,10 +12,9 @@
 #include "parkade/geometry/se3.hpp"
 #include "parkade/mapping/layered_grid.hpp"
 #include "parkade/types/semantic_class.hpp"
+#include "parkade/types/semantic_features.hpp"
 
 namespace parkade {
-
-enum class SlotShape : std::uint8_t { kPerpendicular = 0, kParallel = 1, kSlanted = 2 };
 
 /// A parking slot of the map. World frame, metres.
 struct MapSlot {
