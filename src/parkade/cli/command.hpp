@@ -15,6 +15,7 @@ namespace parkade::cli {
 void addInfoCommand(CLI::App& app, int& exit_code);
 void addEvalCommand(CLI::App& app, int& exit_code);
 void addBevCommand(CLI::App& app, int& exit_code);
+void addMapCommand(CLI::App& app, int& exit_code);
 void addRunCommand(CLI::App& app, int& exit_code);
 void addSimCommand(CLI::App& app, int& exit_code);
 

@@ -54,6 +54,9 @@ int run(int argc, char** argv) {
 #ifdef PARKADE_WITH_EVAL
   addEvalCommand(app, exit_code);
 #endif
+#ifdef PARKADE_WITH_MAPPING
+  addMapCommand(app, exit_code);
+#endif
 #ifdef PARKADE_WITH_IO
   addInfoCommand(app, exit_code);
 #endif

@@ -34,6 +34,14 @@ Status writeFile(const std::string& path, const std::string& content) {
   return {};
 }
 
+// A damaged file may place cells or slots kilometres apart: no picture of terabytes then.
+Status checkPictureSize(double width, double height) {
+  constexpr double kMostPixels = 3e8;
+  if (width >= 1.0 && height >= 1.0 && width * height <= kMostPixels) return {};
+  return Error{fmt::format("the map's picture would have {:.0f} x {:.0f} pixels, more than {:.0f}",
+                           width, height, kMostPixels)};
+}
+
 LayeredGrid::Bounds boundsOf(const ParkingMap& map) {
   return map.grid.bounds().value_or(LayeredGrid::Bounds{});
 }
@@ -149,8 +157,8 @@ class OsmWriter {
         case '"':
           out += "&quot;";
           break;
-        default:
-          out += c;
+        default:  // XML knows no control characters
+          out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
       }
     }
     return out;
@@ -274,6 +282,8 @@ Status exportNav2(const ParkingMap& map, GridLayer layer, const std::string& fol
   const LayeredGrid::Bounds bounds = boundsOf(map);
   const int width = bounds.max.x() - bounds.min.x() + 1;
   const int height = bounds.max.y() - bounds.min.y() + 1;
+  const Eigen::Vector2d size = (bounds.max - bounds.min + Eigen::Vector2i::Ones()).cast<double>();
+  if (const Status fits = checkPictureSize(size.x(), size.y()); !fits) return fits;
   const std::string name(kGridLayerNames[static_cast<std::size_t>(layer)]);
   std::string pgm = fmt::format("P5\n{} {}\n255\n", width, height);
   pgm.reserve(pgm.size() + static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
@@ -309,7 +319,8 @@ Status exportGeoJson(const ParkingMap& map, const std::string& path) {
                            {"unit", "metre"},
                            {"axes", "x, y in the ground plane, right-handed, z up"}}},
                          {"features", features}};
-  return writeFile(path, document.dump(1) + "\n");
+  // Text of a damaged file need not be UTF-8.
+  return writeFile(path, document.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
 }
 
 Status exportLanelet2(const ParkingMap& map, const std::string& path) {
@@ -337,7 +348,7 @@ Status exportLanelet2(const ParkingMap& map, const std::string& path) {
   return writeFile(path, osm.text());
 }
 
-cv::Mat drawMap(const ParkingMap& map, double metres_per_px) {
+Result<cv::Mat> drawMap(const ParkingMap& map, double metres_per_px) {
   constexpr double kFar = std::numeric_limits<double>::max();
   Eigen::Vector2d low = Eigen::Vector2d::Constant(kFar);
   Eigen::Vector2d high = Eigen::Vector2d::Constant(-kFar);
@@ -352,11 +363,11 @@ cv::Mat drawMap(const ParkingMap& map, double metres_per_px) {
     }
   }
   if (low.x() > high.x()) low = high = Eigen::Vector2d::Zero();  // an empty map
-  const Eigen::Vector2d size = (high - low) / metres_per_px;
-  Picture picture{
-      cv::Mat(std::max(1, static_cast<int>(std::ceil(size.y()))),
-              std::max(1, static_cast<int>(std::ceil(size.x()))), CV_8UC3, cv::Scalar(38, 36, 34)),
-      Eigen::Vector2d(low.x(), high.y()), metres_per_px};
+  const Eigen::Vector2d size = ((high - low) / metres_per_px).cwiseMax(1.0);
+  if (const Status fits = checkPictureSize(size.x(), size.y()); !fits) return fits.error();
+  Picture picture{cv::Mat(static_cast<int>(std::ceil(size.y())),
+                          static_cast<int>(std::ceil(size.x())), CV_8UC3, cv::Scalar(38, 36, 34)),
+                  Eigen::Vector2d(low.x(), high.y()), metres_per_px};
   for (int v = 0; v < picture.image.rows; ++v) {
     for (int u = 0; u < picture.image.cols; ++u) {
       const Eigen::Vector2i cell = map.grid.cellOf(picture.world(u, v));

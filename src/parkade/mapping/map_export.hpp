@@ -15,7 +15,7 @@ namespace parkade {
 
 /// One layer as Nav2's map_server reads it: FOLDER/LAYER.pgm (trinary: 0 present, 254 seen and
 /// absent, 205 unknown) and LAYER.yaml. All layers of a map share one frame and size. An empty map
-/// gives one unknown cell.
+/// gives one unknown cell. Fails where the map is too wide for one picture.
 Status exportNav2(const ParkingMap& map, GridLayer layer, const std::string& folder);
 
 /// Slots and objects as a GeoJSON FeatureCollection. Coordinates are metres of the local frame,
@@ -28,7 +28,7 @@ Status exportGeoJson(const ParkingMap& map, const std::string& path);
 Status exportLanelet2(const ParkingMap& map, const std::string& path);
 
 /// The map as a picture (CV_8UC3, BGR), north up: layers in colour, free slots green, occupied
-/// ones red, unsure ones yellow.
-cv::Mat drawMap(const ParkingMap& map, double metres_per_px = 0.05);
+/// ones red, unsure ones yellow. Fails where the map is too wide for one picture.
+Result<cv::Mat> drawMap(const ParkingMap& map, double metres_per_px = 0.05);
 
 }  // namespace parkade

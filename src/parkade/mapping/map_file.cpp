@@ -382,4 +382,17 @@ Result<ParkingMap> loadMap(const std::string& path) {
   }
 }
 
+Status checkIntegrity(const std::string& path) {
+  try {
+    const Database database(path, Database::Mode::kRead);
+    checkIdentity(database, path);
+    Statement row(database, "PRAGMA integrity_check(1)");
+    const std::string verdict = row.step() ? row.text(0) : "no answer";
+    if (verdict != "ok") return Error{fmt::format("{}: is damaged: {}", path, verdict)};
+    return {};
+  } catch (const SqliteError& error) {
+    return Error{error.what()};
+  }
+}
+
 }  // namespace parkade

@@ -39,4 +39,7 @@ class MapFile {
 /// small multiple of the file's size.
 Result<ParkingMap> loadMap(const std::string& path);
 
+/// Walks every page and index of the file, as loading does not. Fails with what is damaged.
+Status checkIntegrity(const std::string& path);
+
 }  // namespace parkade

@@ -137,6 +137,24 @@ TEST_F(MapFileTest, ValuesOutOfRangeAreNamed) {
   EXPECT_THAT(messageAfter("DROP TABLE edge"), HasSubstr("edge"));
 }
 
+TEST_F(MapFileTest, IntegrityCheckFindsDamageThatLoadingDoesNotSee) {
+  ParkingMap map = sampleMap();
+  save(map);
+  EXPECT_TRUE(checkIntegrity(path_));
+  {
+    sqlite::Database database(path_, sqlite::Database::Mode::kReadWriteCreate);
+    database.execute("CREATE INDEX extra ON slot (x0)");
+    database.execute("PRAGMA writable_schema = ON");
+    database.execute(
+        "UPDATE sqlite_schema SET sql = 'CREATE INDEX extra ON slot (y0)' "
+        "WHERE name = 'extra'");
+  }
+  EXPECT_TRUE(loadMap(path_));
+  const Status status = checkIntegrity(path_);
+  ASSERT_FALSE(status);
+  EXPECT_THAT(status.error().message, HasSubstr("is damaged"));
+}
+
 TEST_F(MapFileTest, DamagedBytesNeverCrash) {
   ParkingMap map = sampleMap();
   save(map);
@@ -165,7 +183,7 @@ TEST_F(MapFileTest, KillDuringWritingLeavesAMapThatOpens) {
   // The first save is the parent's: a child may be killed before it reaches its own.
   ParkingMap first = sampleMap(99);
   save(first);
-  constexpr int kRounds = 10;
+  constexpr int kRounds = 50;
   int complete = 0;
   for (int round = 0; round < kRounds; ++round) {
     const pid_t child = fork();
@@ -179,7 +197,7 @@ TEST_F(MapFileTest, KillDuringWritingLeavesAMapThatOpens) {
       }
       _exit(1);
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(15 + 7 * round));
+    std::this_thread::sleep_for(std::chrono::milliseconds(5 + 3 * round % 61));
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
     const Result<ParkingMap> loaded = loadMap(path_);

@@ -1,0 +1,243 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "parkade/cli/command.hpp"
+#include "parkade/io/file.hpp"
+#include "parkade/io/image_file.hpp"
+#include "parkade/mapping/map_check.hpp"
+#include "parkade/mapping/map_export.hpp"
+#include "parkade/mapping/map_file.hpp"
+
+namespace parkade::cli {
+namespace {
+
+using nlohmann::json;
+
+struct MapArguments {
+  std::string path;
+  std::string json;
+  std::string out;
+  std::vector<std::string> formats;
+  double metres_per_px = 0.05;
+};
+
+constexpr double kFree = 0.65;  // as map_export.hpp draws slots
+constexpr double kOccupied = 0.35;
+
+json layerJson(const ParkingMap& map, GridLayer layer) {
+  std::int64_t known = 0;
+  std::int64_t present = 0;
+  for (const auto& [at, tile] : map.grid.tiles(layer)) {
+    for (const GridCell& cell : tile.cells) {
+      known += cell.known() ? 1 : 0;
+      present += cell.known() && cell.log_odds > 0 && cell.semantic_class != SemanticClass::kFloor;
+    }
+  }
+  const double area = map.grid.resolution() * map.grid.resolution();
+  return {{"known_m2", area * static_cast<double>(known)},
+          {"present_m2", area * static_cast<double>(present)}};
+}
+
+double graphLength(const ParkingMap& map) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < map.nodes.size(); ++i) {
+    length += (map.nodes[i].T_world_vehicle.translation() -
+               map.nodes[i - 1].T_world_vehicle.translation())
+                  .norm();
+  }
+  return length;
+}
+
+json describe(const std::string& path, const ParkingMap& map) {
+  std::error_code code;
+  json result = {{"name", map.name},
+                 {"file_bytes", std::filesystem::file_size(path, code)},
+                 {"schema_version", kMapSchemaVersion},
+                 {"resolution_m", map.grid.resolution()}};
+  if (const auto bounds = map.grid.bounds()) {
+    const Eigen::Vector2d low = map.grid.resolution() * bounds->min.cast<double>();
+    const Eigen::Vector2d high =
+        map.grid.resolution() * (bounds->max + Eigen::Vector2i::Ones()).cast<double>();
+    result["min"] = {low.x(), low.y()};
+    result["max"] = {high.x(), high.y()};
+  }
+  for (const GridLayer layer : kGridLayers) {
+    result["layers"][std::string(kGridLayerNames[static_cast<std::size_t>(layer)])] =
+        layerJson(map, layer);
+  }
+  int free = 0;
+  int occupied = 0;
+  int numbered = 0;
+  for (const MapSlot& slot : map.slots) {
+    free += slot.probability_free > kFree ? 1 : 0;
+    occupied += slot.probability_free < kOccupied ? 1 : 0;
+    numbered += slot.number.empty() ? 0 : 1;
+  }
+  result["slots"] = {
+      {"count", map.slots.size()}, {"free", free}, {"occupied", occupied}, {"numbered", numbered}};
+  result["objects"] = json::object();
+  for (const MapObject& object : map.objects) {
+    const std::string name(kSemanticClassNames[static_cast<std::size_t>(object.semantic_class)]);
+    result["objects"][name] = result["objects"].value(name, 0) + 1;
+  }
+  const auto loops = std::count_if(map.edges.begin(), map.edges.end(), [](const PoseGraphEdge& e) {
+    return e.kind == EdgeKind::kLoop;
+  });
+  result["graph"] = {{"nodes", map.nodes.size()},
+                     {"edges", map.edges.size()},
+                     {"loops", loops},
+                     {"length_m", graphLength(map)}};
+  return result;
+}
+
+std::string textOf(const std::string& path, const json& d) {
+  std::string text =
+      fmt::format("{}: map '{}', {:.2f} MB, cells of {} m\n", path, d["name"].get<std::string>(),
+                  1e-6 * d["file_bytes"].get<double>(), d["resolution_m"].get<double>());
+  if (d.contains("min")) {
+    text += fmt::format("  extent   x {:.2f} to {:.2f} m, y {:.2f} to {:.2f} m\n",
+                        d["min"][0].get<double>(), d["max"][0].get<double>(),
+                        d["min"][1].get<double>(), d["max"][1].get<double>());
+  } else {
+    text += "  extent   no cell is known\n";
+  }
+  for (const std::string_view name : kGridLayerNames) {
+    const json& layer = d["layers"][std::string(name)];
+    text += fmt::format("  layer    {:<14}{:>10.1f} m^2 seen,{:>9.1f} m^2 present\n", name,
+                        layer["known_m2"].get<double>(), layer["present_m2"].get<double>());
+  }
+  const json& slots = d["slots"];
+  text += fmt::format("  slots    {} ({} free, {} occupied, {} with a number)\n",
+                      slots["count"].get<int>(), slots["free"].get<int>(),
+                      slots["occupied"].get<int>(), slots["numbered"].get<int>());
+  std::string objects;
+  for (const auto& [name, count] : d["objects"].items()) {
+    objects += fmt::format("{}{} {}", objects.empty() ? "" : ", ", count.get<int>(), name);
+  }
+  const json& graph = d["graph"];
+  text += fmt::format("  objects  {}\n", objects.empty() ? "none" : objects);
+  text += fmt::format("  graph    {} nodes over {:.1f} m, {} edges, {} of them loops\n",
+                      graph["nodes"].get<int>(), graph["length_m"].get<double>(),
+                      graph["edges"].get<int>(), graph["loops"].get<int>());
+  return text;
+}
+
+Status showMap(const MapArguments& arguments) {
+  const Result<ParkingMap> map = loadMap(arguments.path);
+  if (!map) return map.error();
+  const json description = describe(arguments.path, *map);
+  fmt::print("{}", textOf(arguments.path, description));
+  if (arguments.json.empty()) return {};
+  return writeFileAtomic(arguments.json,
+                         description.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+}
+
+Status checkMap(const MapArguments& arguments) {
+  const Result<ParkingMap> map = loadMap(arguments.path);
+  if (!map) return map.error();
+  if (Status status = checkIntegrity(arguments.path); !status) return status;
+  const std::vector<std::string> faults = findFaults(*map);
+  if (!arguments.json.empty()) {
+    const json result = {{"faults", faults}};
+    if (Status status = writeFileAtomic(arguments.json, result.dump(2) + "\n"); !status) {
+      return status;
+    }
+  }
+  if (faults.empty()) {
+    fmt::print("{}: sound: {} slots, {} objects, {} nodes\n", arguments.path, map->slots.size(),
+               map->objects.size(), map->nodes.size());
+    return {};
+  }
+  for (const std::string& fault : faults) fmt::print("{}: {}\n", arguments.path, fault);
+  return Error{
+      fmt::format("{}: {} fault{}", arguments.path, faults.size(), faults.size() == 1 ? "" : "s")};
+}
+
+Status exportPicture(const MapArguments& arguments, const ParkingMap& map) {
+  const Result<cv::Mat> picture = drawMap(map, arguments.metres_per_px);
+  if (!picture) return picture.error();
+  ImageEncoding encoding;
+  encoding.png = true;
+  return writeImage(joinPath(arguments.out, "map.png"), *picture, encoding);
+}
+
+Status exportMap(const MapArguments& arguments) {
+  const Result<ParkingMap> map = loadMap(arguments.path);
+  if (!map) return map.error();
+  if (Status made = makeFolders(arguments.out); !made) return made;
+  const auto wants = [&](const char* format) {
+    return arguments.formats.empty() ||
+           std::find(arguments.formats.begin(), arguments.formats.end(), format) !=
+               arguments.formats.end();
+  };
+  if (wants("nav2")) {
+    for (const GridLayer layer : kGridLayers) {
+      if (Status status = exportNav2(*map, layer, arguments.out); !status) return status;
+    }
+  }
+  if (wants("png")) {
+    if (Status status = exportPicture(arguments, *map); !status) return status;
+  }
+  if (wants("geojson")) {
+    Status status = exportGeoJson(*map, joinPath(arguments.out, "map.geojson"));
+    if (!status) return status;
+  }
+  if (wants("lanelet2")) {
+    Status status = exportLanelet2(*map, joinPath(arguments.out, "map.osm"));
+    if (!status) return status;
+  }
+  fmt::print("{}: exported to {}\n", arguments.path, arguments.out);
+  return {};
+}
+
+CLI::App* addAction(CLI::App* command, const char* name, const char* help,
+                    const std::shared_ptr<MapArguments>& a, int& exit_code,
+                    Status (*action)(const MapArguments&)) {
+  auto* sub = command->add_subcommand(name, help);
+  sub->add_option("MAP", a->path, "Map file, such as a run's map.db")->required();
+  sub->callback([a, action, &exit_code] {
+    const Status status = action(*a);
+    if (!status) exit_code = fail(status.error());
+  });
+  return sub;
+}
+
+}  // namespace
+
+void addMapCommand(CLI::App& app, int& exit_code) {
+  auto* command = app.add_subcommand("map", "Describe, check or export a map");
+  const auto a = std::make_shared<MapArguments>();
+  command->require_subcommand(1);
+  auto* info = addAction(command, "info", "Say what a map holds", a, exit_code, showMap);
+  info->add_option("--json", a->json, "Write the same as JSON to this file");
+  auto* check = addAction(command, "check",
+                          "Look for damage and contradictions; exit code 1 where "
+                          "there are any",
+                          a, exit_code, checkMap);
+  check->add_option("--json", a->json, "Write the faults as JSON to this file");
+  auto* out = addAction(command, "export", "Write the formats of others", a, exit_code, exportMap);
+  out->add_option("-o,--out", a->out, "Folder to write, made where it is not there")->required();
+  out->add_option("--format", a->formats, "nav2, png, geojson, lanelet2; default: all")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"nav2", "png", "geojson", "lanelet2"}));
+  out->add_option("--metres-per-px", a->metres_per_px, "Of the picture")
+      ->check(CLI::Range(0.005, 10.0))
+      ->capture_default_str();
+  command->footer(
+      "Examples:\n"
+      "  parkade map info OUT/map.db\n"
+      "  parkade map check OUT/map.db\n"
+      "  parkade map export OUT/map.db --out OUT/map --format nav2,geojson");
+}
+
+}  // namespace parkade::cli

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/mapping/map_check.hpp"
+
+#include <gmock/gmock.h>
+
+#include "parkade/mapping/map_test_support.hpp"
+
+namespace parkade {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using Corners = std::array<Eigen::Vector2d, 4>;
+
+Corners rectangle(double x, double y, double width, double depth) {
+  return {Eigen::Vector2d(x, y), Eigen::Vector2d(x + width, y),
+          Eigen::Vector2d(x + width, y + depth), Eigen::Vector2d(x, y + depth)};
+}
+
+TEST(MapCheck, OverlapOfRectangles) {
+  const Corners a = rectangle(0.0, 0.0, 2.0, 4.0);
+  EXPECT_DOUBLE_EQ(overlapShare(a, a), 1.0);
+  EXPECT_NEAR(overlapShare(a, rectangle(1.0, 0.0, 2.0, 4.0)), 0.5, 1e-12);
+  EXPECT_NEAR(overlapShare(rectangle(1.0, 1.0, 0.5, 0.5), a), 1.0, 1e-12);
+  EXPECT_DOUBLE_EQ(overlapShare(a, rectangle(2.0, 0.0, 2.0, 4.0)), 0.0);
+  Corners clockwise = rectangle(1.0, 2.0, 2.0, 4.0);
+  std::swap(clockwise[1], clockwise[3]);
+  EXPECT_NEAR(overlapShare(a, clockwise), 0.25, 1e-12);
+}
+
+TEST(MapCheck, SoundMapHasNoFaults) {
+  EXPECT_THAT(findFaults(testing::sampleMap()), IsEmpty());
+  EXPECT_THAT(findFaults(ParkingMap()), IsEmpty());
+}
+
+TEST(MapCheck, FaultsAreNamed) {
+  ParkingMap map = testing::sampleMap();
+  map.slots[1].id = map.slots[0].id;
+  EXPECT_THAT(findFaults(map), ElementsAre(HasSubstr("slot 10: id repeats")));
+  map = testing::sampleMap();
+  map.slots[1].corners = map.slots[0].corners;
+  EXPECT_THAT(findFaults(map), ElementsAre(HasSubstr("slots 10 and 11: 100 %")));
+  map = testing::sampleMap();
+  map.slots[2].corners.fill({1.0, 1.0});
+  EXPECT_THAT(findFaults(map), ElementsAre(HasSubstr("slot 12: area of 0.00")));
+  map = testing::sampleMap();
+  map.slots[2].corners[0] = {1e300, 0.0};
+  map.objects[0].position.x() = -1e9;
+  EXPECT_THAT(findFaults(map),
+              ElementsAre(HasSubstr("slot 12: lies"), HasSubstr("object 3: lies")));
+  map = testing::sampleMap();
+  map.edges[0].information(0, 0) = -1.0;
+  EXPECT_THAT(findFaults(map), ElementsAre(HasSubstr("edge 0 to 1")));
+  map = testing::sampleMap();
+  map.nodes[2].t_ns = 5;
+  EXPECT_THAT(findFaults(map), ElementsAre(HasSubstr("node 2: is older")));
+}
+
+}  // namespace
+}  // namespace parkade

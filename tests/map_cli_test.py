@@ -1,0 +1,106 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Parkade authors
+# SPDX-License-Identifier: Apache-2.0
+"""Drives `parkade map` as a user does: sound, damaged and foreign files in, text and exit codes out."""
+
+import json
+import pathlib
+import sqlite3
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PARKADE, SAMPLE_MAP = sys.argv.pop(1), sys.argv.pop(1)
+
+
+def parkade_map(*arguments):
+    return subprocess.run(
+        [PARKADE, "map", *map(str, arguments)], capture_output=True, text=True, timeout=120
+    )
+
+
+class MapTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="parkade_map_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.map = self.folder / "map.db"
+        subprocess.run([SAMPLE_MAP, str(self.map)], check=True, timeout=60)
+
+    def change(self, sql):
+        with sqlite3.connect(self.map) as database:
+            database.execute(sql)
+
+    def test_help_shows_an_example(self):
+        result = parkade_map("--help")
+        self.assertEqual(result.returncode, 0)
+        self.assertIn("Examples:", result.stdout)
+        self.assertEqual(parkade_map().returncode, 2)
+        self.assertEqual(parkade_map("export", self.map).returncode, 2)
+
+    def test_info(self):
+        out = self.folder / "info.json"
+        result = parkade_map("info", self.map, "--json", out)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("6 (3 free, 3 occupied, 5 with a number)", result.stdout)
+        self.assertIn("4 nodes over 3.0 m, 3 edges, 1 of them loops", result.stdout)
+        description = json.loads(out.read_text(encoding="utf-8"))
+        self.assertEqual(description["objects"], {"arrow": 1, "zone_marker": 1})
+        self.assertGreater(description["layers"]["parking_lines"]["known_m2"], 0.5)
+
+    def test_check_finds_what_loads_and_is_wrong(self):
+        result = parkade_map("check", self.map)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("sound", result.stdout)
+        self.change("UPDATE slot SET x0=2.5, x1=0, x2=0, x3=2.5 WHERE id = 11")
+        result = parkade_map("check", self.map)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("slots 10 and 11: 100 %", result.stdout)
+        self.assertIn("1 fault", result.stderr)
+
+    def test_damaged_and_foreign_files(self):
+        self.change("UPDATE slot SET probability_free = 7 WHERE id = 12")
+        for action in ("info", "check", "export"):
+            extra = ("--out", self.folder / "x") if action == "export" else ()
+            result = parkade_map(action, self.map, *extra)
+            self.assertEqual(result.returncode, 1)
+            self.assertIn("slot 12: probability 7", result.stderr)
+            self.assertIn("map.db", result.stderr)
+        text = self.folder / "letter.txt"
+        text.write_text("Dear reader, this is no map. " * 100, encoding="utf-8")
+        other = self.folder / "other.db"
+        with sqlite3.connect(other) as database:
+            database.execute("CREATE TABLE t (a)")
+        empty = self.folder / "empty.db"
+        empty.write_bytes(b"")
+        for path in (text, other, empty, self.folder / "none.db", self.folder):
+            result = parkade_map("info", path)
+            self.assertEqual(result.returncode, 1, path)
+            self.assertIn(str(path), result.stderr)
+        cut = self.folder / "cut.db"
+        cut.write_bytes(self.map.read_bytes()[:9000])
+        self.assertEqual(parkade_map("info", cut).returncode, 1)
+
+    def test_export(self):
+        out = self.folder / "export"
+        result = parkade_map("export", self.map, "--out", out)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        names = {path.name for path in out.iterdir()}
+        for layer in ("parking_lines", "availability", "road_markers", "zone_markers", "dynamic"):
+            self.assertLessEqual({f"{layer}.pgm", f"{layer}.yaml"}, names)
+        document = json.loads((out / "map.geojson").read_text(encoding="utf-8"))
+        self.assertEqual(len(document["features"]), 8)
+        png = (out / "map.png").read_bytes()
+        self.assertEqual(png[:4], b"\x89PNG")
+        self.assertGreater(struct.unpack(">I", png[16:20])[0], 100)
+        few = self.folder / "few"
+        self.assertEqual(
+            parkade_map("export", self.map, "--out", few, "--format", "png,lanelet2").returncode, 0
+        )
+        self.assertEqual({path.name for path in few.iterdir()}, {"map.png", "map.osm"})
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
