@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
 #include "parkade/core/check.hpp"
 
@@ -107,6 +108,28 @@ GroundTable::GroundTable(const RigCamera& camera, const BevGeometry& geometry, d
               static_cast<float>(entry.d_pixel_d_attitude(axis, k));
         }
       }
+    }
+  }
+}
+
+void GroundTable::hide(const cv::Mat& mask) {
+  PARKADE_CHECK(mask.type() == CV_8UC1, "mask of type {}", mask.type());
+  if (roi_.empty()) return;
+  constexpr float kNear = 2.0F;  // px from the outline that are left out
+  const float full = kNear + 0.04F * static_cast<float>(mask.rows);
+  cv::Mat distance;
+  // The image's border is no outline: the table fades there by itself.
+  cv::distanceTransform(mask != 0, distance, cv::DIST_L2, cv::DIST_MASK_3);
+  for (int v = 0; v < roi_.height; ++v) {
+    for (int u = 0; u < roi_.width; ++u) {
+      float& weight = weight_.at<float>(v, u);
+      if (weight <= 0.0F) continue;
+      const int x = cvRound(base_[0].at<float>(v, u));
+      const int y = cvRound(base_[1].at<float>(v, u));
+      const bool inside = x >= 0 && y >= 0 && x < mask.cols && y < mask.rows;
+      const float far = inside ? distance.at<float>(y, x) : 0.0F;
+      const float fade = std::clamp((far - kNear) / (full - kNear), 0.0F, 1.0F);
+      weight *= fade * fade * (3.0F - 2.0F * fade);
     }
   }
 }

@@ -28,6 +28,10 @@ class GroundTable {
   /// distance over the height (grazing view, few image pixels per metre) and to 0 at the border.
   [[nodiscard]] const cv::Mat& weight() const { return weight_; }
 
+  /// Leaves out what the own body hides: mask is CV_8UC1 of the image's size, 0 where it does. The
+  /// weight falls to 0 towards the body's outline, whose blurred edge is no ground either.
+  void hide(const cv::Mat& mask);
+
   /// Image points for an attitude, as cv::remap takes them: CV_32FC1 each, of roi()'s size; far
   /// outside the image where not covered.
   void mapFor(const GroundAttitude& attitude, cv::Mat& map_x, cv::Mat& map_y) const;

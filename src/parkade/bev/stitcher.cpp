@@ -101,6 +101,18 @@ BevStitcher::BevStitcher(const Rig& rig, const BevOptions& options)
   findOverlaps();
 }
 
+void BevStitcher::setMask(int camera, const cv::Mat& mask) {
+  PARKADE_CHECK(camera >= 0 && camera < static_cast<int>(tables_.size()), "camera {} of {}", camera,
+                tables_.size());
+  const Camera& model = rig_.cameras[static_cast<std::size_t>(camera)].camera;
+  PARKADE_CHECK(mask.cols == model.width() && mask.rows == model.height(),
+                "mask of {} x {}, calibration for {} x {}", mask.cols, mask.rows, model.width(),
+                model.height());
+  tables_[static_cast<std::size_t>(camera)].hide(mask);
+  overlaps_.clear();
+  findOverlaps();
+}
+
 std::vector<double> BevStitcher::gains() const {
   std::vector<double> gains;
   for (const double log_gain : log_gains_) gains.push_back(std::exp(log_gain));

@@ -47,6 +47,10 @@ class BevStitcher {
   /// vehicle frame's origin.
   BevStitcher(const Rig& rig, const BevOptions& options);
 
+  /// Where the own body hides the world from a camera: CV_8UC1 of its image's size, 0 where it
+  /// does (checked).
+  void setMask(int camera, const cv::Mat& mask);
+
   /// Images must have the sizes of the rig's cameras and be all grey or all BGR (checked); empty
   /// ones are left out.
   [[nodiscard]] BevImage stitch(const FrameSet& frames, const GroundAttitude& attitude = {});

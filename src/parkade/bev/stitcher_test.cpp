@@ -122,6 +122,30 @@ TEST(BevStitcher, OwnCarAndUnseenGroundAreNotValid) {
   EXPECT_EQ(bev.valid.at<std::uint8_t>(static_cast<int>(car.y()), static_cast<int>(car.x())), 0);
 }
 
+TEST(BevStitcher, OwnBodyIsLeftToTheNeighbours) {
+  const Rig rig = testRig();
+  BevStitcher plain(rig, {});
+  BevStitcher masked(rig, {});
+  FrameSet frames = renderGround(rig, {});
+  // The left third of the front camera's picture is the own body, painted white.
+  const cv::Rect body(0, 0, 213, 400);
+  cv::Mat mask(400, 640, CV_8UC1, cv::Scalar(255));
+  mask(body).setTo(0);
+  masked.setMask(0, mask);
+  const BevImage clean = plain.stitch(frames);
+  frames.images[0](body).setTo(255);
+  const BevImage with = masked.stitch(frames);
+  // Wherever something is still seen it is the ground, not the body.
+  cv::Mat difference;
+  cv::absdiff(clean.image, with.image, difference);
+  difference.setTo(0, with.valid == 0);
+  double worst = 0.0;
+  cv::minMaxLoc(difference, nullptr, &worst);
+  EXPECT_LT(worst, 12.0);
+  EXPECT_LT(cv::countNonZero(with.valid), cv::countNonZero(clean.valid));
+  EXPECT_GT(cv::countNonZero(with.valid), cv::countNonZero(clean.valid) * 8 / 10);
+}
+
 TEST(BevStitcher, AMissingCameraLeavesAHoleOnly) {
   const Rig rig = testRig();
   BevStitcher stitcher(rig, {});

@@ -11,6 +11,7 @@
 #include "parkade/cli/open_source.hpp"
 #include "parkade/core/progress.hpp"
 #include "parkade/io/image_file.hpp"
+#include "parkade/tracking/overlap.hpp"
 
 namespace parkade::cli {
 namespace {
@@ -91,6 +92,11 @@ Status stitchSequence(const BevArguments& arguments) {
   if (!opened) return opened.error();
   SensorSource& source = *opened->source;
   BevStitcher stitcher(opened->rig, arguments.options);
+  const Result<std::vector<cv::Mat>> masks = readBodyMasks(opened->rig);
+  if (!masks) return masks.error();
+  for (std::size_t i = 0; i < masks->size(); ++i) {
+    if (!(*masks)[i].empty()) stitcher.setMask(static_cast<int>(i), (*masks)[i]);
+  }
   ProgressPrinter progress("bev");
   int written = 0;
   while (true) {
