@@ -90,6 +90,12 @@ class Renderer {
   [[nodiscard]] TruthImages renderTruth(int camera, const SE3& T_world_cam,
                                         const Moment& moment) const;
 
+  /// CV_8UC1, SemanticClass along any lines of sight from a camera's place: directions_cam is
+  /// CV_32FC3, in the camera frame, of any length. kUnknown where the direction is zero, and on the
+  /// own car.
+  [[nodiscard]] cv::Mat renderSights(const cv::Mat& directions_cam, const SE3& T_world_cam,
+                                     const Moment& moment) const;
+
   /// The ground around the vehicle from straight above, without ceiling and hanging signs and
   /// without the own car: row 0 lies ahead, column 0 to the left, the vehicle's origin at the
   /// image's centre ((size - 1) / 2). Follows the vehicle's heading, not its pitch and roll.

@@ -21,6 +21,7 @@ set(RENDER_SOURCES
     render/sensor_kernel.cpp
     render/sensor_model.cpp
     render/shading.cpp
+    render/sight_labels.cpp
     render/texture.cpp
     render/tracer.cpp)
 # Fused multiply-add would make pictures differ between instruction sets.
