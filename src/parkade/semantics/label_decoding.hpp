@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "parkade/types/semantic_class.hpp"
+
+namespace parkade {
+
+/// The likeliest class of every pixel, and its probability (softmax over the channels, 255 = 1).
+/// logits is CV_32F, 1 x K x h x w with a channel per class, resized bilinearly to size; or
+/// 1 x 4K x size/2 with four channels per class, one for each pixel of a 2 x 2 block, row by row.
+/// Several channels may mean one class; the probability is that of the best channel.
+void decodeLogits(const cv::Mat& logits, const std::vector<SemanticClass>& classes,
+                  const cv::Size& size, cv::Mat& labels, cv::Mat& confidence);
+
+}  // namespace parkade
