@@ -61,6 +61,20 @@ class LayeredGrid {
   /// A cell to change: makes its tile and marks it dirty.
   GridCell& touch(GridLayer layer, const Eigen::Vector2i& cell);
 
+  /// The cells of a tile, row by row; makes it and marks it dirty. Valid until tiles are dropped.
+  std::array<GridCell, kTileCells * kTileCells>& touchTile(GridLayer layer, const TileIndex& at) {
+    Tile& tile = layers_[index(layer)][at];
+    tile.dirty = true;
+    return tile.cells;
+  }
+  /// The same where the tile exists, which is marked dirty; else null.
+  std::array<GridCell, kTileCells * kTileCells>* findTile(GridLayer layer, const TileIndex& at) {
+    const auto it = layers_[index(layer)].find(at);
+    if (it == layers_[index(layer)].end()) return nullptr;
+    it->second.dirty = true;
+    return &it->second.cells;
+  }
+
   void add(GridLayer layer, const Eigen::Vector2d& p_world, SemanticClass semantic_class,
            float delta) {
     addEvidence(touch(layer, cellOf(p_world)), semantic_class, delta);

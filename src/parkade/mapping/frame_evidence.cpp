@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/mapping/frame_evidence.hpp"
+
+#include "parkade/core/check.hpp"
+
+namespace parkade {
+
+bool PackedLabels::isMoving(const Eigen::Vector2d& p_level) const {
+  return std::any_of(moving.begin(), moving.end(), [&](const Box& box) {
+    const Eigen::Vector2d from = p_level - box.center;
+    const double c = std::cos(box.heading);
+    const double s = std::sin(box.heading);
+    return std::abs(c * from.x() + s * from.y()) <= box.half_size.x() &&
+           std::abs(c * from.y() - s * from.x()) <= box.half_size.y();
+  });
+}
+
+PackedLabels packLabels(const SemanticFrame& frame) {
+  const BevGeometry& g = frame.labels.geometry;
+  const cv::Mat& labels = frame.labels.labels;
+  const cv::Mat& confidence = frame.labels.confidence;
+  PARKADE_CHECK(labels.type() == CV_8UC1 && labels.rows == g.height_px && labels.cols == g.width_px,
+                "labels of {} x {} pixels, type {}", labels.cols, labels.rows, labels.type());
+  PARKADE_CHECK(confidence.empty() || confidence.size() == labels.size(),
+                "confidence of {} x {} pixels", confidence.cols, confidence.rows);
+  PackedLabels packed;
+  packed.geometry = g;
+  packed.pixels.resize(static_cast<std::size_t>(g.width_px) *
+                       static_cast<std::size_t>(g.height_px));
+  std::size_t at = 0;
+  for (int v = 0; v < g.height_px; ++v) {
+    const std::uint8_t* label = labels.ptr<std::uint8_t>(v);
+    const std::uint8_t* sure = confidence.empty() ? nullptr : confidence.ptr<std::uint8_t>(v);
+    for (int u = 0; u < g.width_px; ++u, ++at) {
+      const int level = sure == nullptr ? PackedLabels::kConfidenceLevels - 1 : sure[u] >> 5;
+      packed.pixels[at] =
+          label[u] == 0 ? 0 : static_cast<std::uint8_t>((label[u] & 0x1F) | (level << 5));
+    }
+  }
+  for (const MovingObservation& object : frame.moving) {
+    if (!object.moving) continue;
+    // The contact is the nearest ground point: the body lies behind it, as seen from the car. The
+    // margin takes in what the picture draws of the body beyond its foot.
+    PackedLabels::Box box;
+    constexpr double kMargin = 0.5;
+    const Eigen::Vector2d size = object.size.cwiseMax(0.5);
+    box.half_size = 0.5 * size + Eigen::Vector2d::Constant(kMargin);
+    box.heading = object.heading;
+    const double away = object.contact.norm();
+    box.center = object.contact;
+    if (object.semantic_class == SemanticClass::kVehicle && away > 1e-6) {
+      box.center += object.contact / away * (0.5 * size.y());
+    }
+    packed.moving.push_back(box);
+  }
+  return packed;
+}
+
+LayerRole roleOf(SemanticClass semantic_class) {
+  switch (semantic_class) {
+    case SemanticClass::kFloor:
+      return LayerRole::kGround;
+    case SemanticClass::kSlotLine:
+    case SemanticClass::kLaneLine:
+      return LayerRole::kLine;
+    case SemanticClass::kArrow:
+    case SemanticClass::kSpeedLimitPaint:
+    case SemanticClass::kStopLine:
+    case SemanticClass::kCrossing:
+    case SemanticClass::kSpeedBump:
+    case SemanticClass::kPaintedNumber:
+    case SemanticClass::kWheelStop:
+      return LayerRole::kRoadMarker;
+    case SemanticClass::kPillar:
+    case SemanticClass::kWall:
+    case SemanticClass::kZoneMarker:
+      return LayerRole::kStructure;
+    case SemanticClass::kVehicle:
+      return LayerRole::kVehicle;
+    case SemanticClass::kPedestrian:
+      return LayerRole::kPerson;
+    case SemanticClass::kUnknown:
+    case SemanticClass::kCeiling:
+    case SemanticClass::kGuideSign:
+    case SemanticClass::kSpeedLimitSign:
+      break;
+  }
+  return LayerRole::kNone;
+}
+
+EvidenceKernel::EvidenceKernel(const EvidenceOptions& options)
+    : full_range_(std::min(options.full_range_m, options.range_m - 1e-3)), range_(options.range_m) {
+  for (int level = 0; level < PackedLabels::kConfidenceLevels; ++level) {
+    // The middle of the level's interval; a class that is no more likely than not says nothing.
+    const double p = std::clamp((level + 0.5) / PackedLabels::kConfidenceLevels, 0.5, 0.95);
+    const double log_odds = std::log(p / (1.0 - p));
+    for (int w = 0; w <= kWeights; ++w) {
+      steps_[static_cast<std::size_t>(level)][static_cast<std::size_t>(w)] =
+          static_cast<int>(std::lround(options.gain * log_odds * w / kWeights / GridCell::kStep));
+    }
+    dynamic_steps_[static_cast<std::size_t>(level)] =
+        static_cast<int>(std::lround(options.dynamic_gain * log_odds / GridCell::kStep));
+  }
+}
+
+}  // namespace parkade
