@@ -134,6 +134,8 @@ TEST_F(MapFileTest, ValuesOutOfRangeAreNamed) {
   EXPECT_THAT(messageAfter("UPDATE meta SET value = '0' WHERE key = 'resolution'"),
               HasSubstr("resolution '0'"));
   EXPECT_THAT(messageAfter("PRAGMA user_version = 9"), HasSubstr("schema version 9"));
+  EXPECT_THAT(messageAfter("ALTER TABLE slot DROP COLUMN last_seen_ns"),
+              HasSubstr("number 15, which is missing"));
   EXPECT_THAT(messageAfter("DROP TABLE edge"), HasSubstr("edge"));
 }
 

@@ -83,12 +83,18 @@ void Statement::run() {
   check(sqlite3_reset(handle_.get()), "cannot be written");
 }
 
+std::string Statement::columnName(int column) const {
+  // Null where a damaged schema has fewer columns than were asked for.
+  const char* name = sqlite3_column_name(handle_.get(), column);
+  return name == nullptr ? fmt::format("number {}, which is missing", column) : name;
+}
+
 void Statement::expectType(int column, int type) const {
   const int found = sqlite3_column_type(handle_.get(), column);
   const bool number_as_whole = type == SQLITE_FLOAT && found == SQLITE_INTEGER;
   if (found != type && !number_as_whole) {
     throw SqliteError(fmt::format("column '{}' holds a value of another type ({} instead of {})",
-                                  sqlite3_column_name(handle_.get(), column), found, type));
+                                  columnName(column), found, type));
   }
 }
 
@@ -102,7 +108,7 @@ double Statement::real(int column) const {
   const double value = sqlite3_column_double(handle_.get(), column);
   if (!std::isfinite(value)) {
     throw SqliteError(fmt::format("column '{}' holds {}, which is not a finite number",
-                                  sqlite3_column_name(handle_.get(), column), value));
+                                  columnName(column), value));
   }
   return value;
 }
@@ -110,6 +116,7 @@ double Statement::real(int column) const {
 std::string Statement::text(int column) const {
   expectType(column, SQLITE_TEXT);
   const auto* bytes = reinterpret_cast<const char*>(sqlite3_column_text(handle_.get(), column));
+  if (bytes == nullptr) throw SqliteError("out of memory");
   return {bytes, static_cast<std::size_t>(sqlite3_column_bytes(handle_.get(), column))};
 }
 

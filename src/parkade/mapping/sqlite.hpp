@@ -62,6 +62,7 @@ class Statement {
 
  private:
   void check(int code, const char* doing) const;
+  [[nodiscard]] std::string columnName(int column) const;
   void expectType(int column, int type) const;
 
   struct Finalize {
