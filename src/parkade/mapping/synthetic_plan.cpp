@@ -174,6 +174,11 @@ SemanticFrame PlanObserver::observe(TimeNs t_ns, const SE2& T_world_vehicle, Ran
     const double rise = -pitch * p.x() + roll * p.y();
     return p + rise / kCameraHeight * from_camera;
   };
+  const auto tiltCovariance = [&](const Vector2d& p) -> Eigen::Matrix2d {
+    const Vector2d ray = p - frame.labels.geometry.center;
+    const double rise = noise_.attitude_sigma * p.norm() / kCameraHeight;
+    return rise * rise * ray * ray.transpose();
+  };
   const auto seen = [&](const Vector2d& p_world) {
     return (T_vehicle_world * p_world - frame.labels.geometry.center).norm() < noise_.range_m;
   };
@@ -194,7 +199,10 @@ SemanticFrame PlanObserver::observe(TimeNs t_ns, const SE2& T_world_vehicle, Ran
       point.p_level = distort(T_vehicle_world * p_world);
       point.normal = T_vehicle_world.rotationMatrix() * normal;
       point.p_level += noise_.line_sigma * random.normal() * point.normal;
-      point.sigma = std::max(0.005, noise_.line_sigma);
+      const Vector2d ray = point.p_level - frame.labels.geometry.center;
+      point.sigma = std::hypot(
+          std::max(0.005, noise_.line_sigma),
+          noise_.attitude_sigma * point.p_level.norm() / kCameraHeight * point.normal.dot(ray));
       point.semantic_class = line.semantic_class;
       if (random.chance(noise_.outliers)) {
         point.p_level += Vector2d(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
@@ -211,6 +219,9 @@ SemanticFrame PlanObserver::observe(TimeNs t_ns, const SE2& T_world_vehicle, Ran
     }
     const double sigma = std::max(0.01, noise_.corner_sigma);
     o.entrance_covariance = sigma * sigma * Eigen::Matrix4d::Identity();
+    for (int i = 0; i < 2; ++i)
+      o.entrance_covariance.block<2, 2>(2 * i, 2 * i) +=
+          tiltCovariance(o.corners[static_cast<std::size_t>(i)]);
     o.rear_seen = seen(slot.corners[2]) && seen(slot.corners[3]);
     const bool free = random.chance(noise_.availability_error) ? slot.occupied : !slot.occupied;
     o.probability_free = free ? 0.9 : 0.1;
@@ -227,6 +238,7 @@ SemanticFrame PlanObserver::observe(TimeNs t_ns, const SE2& T_world_vehicle, Ran
     for (int i = 0; i < 3; ++i) o.position[i] += noise_.object_sigma * random.normal();
     const double sigma = std::max(0.02, noise_.object_sigma);
     o.covariance = sigma * sigma * Eigen::Matrix3d::Identity();
+    o.covariance.topLeftCorner<2, 2>() += tiltCovariance(o.position.head<2>());
     o.heading = wrapAngle(object.heading - T_world_vehicle.angle());
     o.sigma_heading = object.semantic_class == SemanticClass::kPillar ? 0.0 : 0.05;
     o.text = object.text;
