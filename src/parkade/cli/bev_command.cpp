@@ -11,6 +11,8 @@
 #include "parkade/cli/open_source.hpp"
 #include "parkade/core/progress.hpp"
 #include "parkade/io/image_file.hpp"
+#include "parkade/semantics/draw_labels.hpp"
+#include "parkade/semantics/segmentation.hpp"
 #include "parkade/tracking/overlap.hpp"
 
 namespace parkade::cli {
@@ -25,6 +27,8 @@ struct BevArguments {
   double start_s = 0.0;
   double duration_s = 0.0;
   int every = 1;
+  bool overlay = false;
+  std::string network;  // class map
   std::vector<std::string> settings;
   BevOptions options;
 };
@@ -36,14 +40,45 @@ constexpr const char* kFooter =
     "\n"
     "Examples:\n"
     "  parkade bev SEQ --out DIR --every 10\n"
+    "  parkade bev SEQ --out DIR --overlay\n"
     "  parkade bev SEQ --out DIR --set width_px=800 --set height_px=800 --set metres_per_px=0.02\n"
     "  parkade bev --rig config/rigs/garage_fisheye_sim.yaml --image cam0=0.png \\\n"
     "      --image cam1=1.png --image cam2=2.png --image cam3=3.png --out DIR";
 
-Status writeBev(const BevImage& bev, const std::string& folder) {
-  return writeImage((std::filesystem::path(folder) / fmt::format("{}.png", bev.t_ns)).string(),
-                    bev.image, {.png = true});
-}
+/// Writes pictures as they are, or with what the network sees laid over.
+class BevWriter {
+ public:
+  static Result<BevWriter> make(const BevArguments& arguments) {
+    BevWriter writer;
+    writer.folder_ = arguments.out;
+    if (!arguments.overlay) return writer;
+    std::string path = arguments.network;
+    if (path.empty()) {
+      const Result<std::string> own = findModel("bev_segmentation");
+      if (!own) return own.error();
+      path = *own;
+    }
+    Result<SegmentationNetwork> network = SegmentationNetwork::load(path);
+    if (!network) return network.error();
+    writer.network_ = std::make_shared<SegmentationNetwork>(std::move(network).value());
+    return writer;
+  }
+
+  Status write(const BevImage& bev) const {
+    cv::Mat picture = bev.image;
+    if (network_) {
+      const Result<BevLabels> labels = network_->segment(bev);
+      if (!labels) return labels.error();
+      picture = drawLabels(bev.image, labels->labels);
+    }
+    return writeImage((std::filesystem::path(folder_) / fmt::format("{}.png", bev.t_ns)).string(),
+                      picture, {.png = true});
+  }
+
+ private:
+  std::string folder_;
+  std::shared_ptr<SegmentationNetwork> network_;
+};
 
 // The frame set of single pictures given as NAME=FILE.
 Result<FrameSet> readFrames(const Rig& rig, const std::vector<std::string>& images) {
@@ -77,8 +112,10 @@ Status stitchSingle(const BevArguments& arguments) {
   if (!rig) return rig.error();
   const Result<FrameSet> frames = readFrames(*rig, arguments.images);
   if (!frames) return frames.error();
+  const Result<BevWriter> writer = BevWriter::make(arguments);
+  if (!writer) return writer.error();
   BevStitcher stitcher(*rig, arguments.options);
-  return writeBev(stitcher.stitch(*frames), arguments.out);
+  return writer->write(stitcher.stitch(*frames));
 }
 
 Status stitchSequence(const BevArguments& arguments) {
@@ -91,6 +128,8 @@ Status stitchSequence(const BevArguments& arguments) {
   Result<OpenedSource> opened = openSource(request);
   if (!opened) return opened.error();
   SensorSource& source = *opened->source;
+  const Result<BevWriter> writer = BevWriter::make(arguments);
+  if (!writer) return writer.error();
   BevStitcher stitcher(opened->rig, arguments.options);
   const Result<std::vector<cv::Mat>> masks = readBodyMasks(opened->rig);
   if (!masks) return masks.error();
@@ -108,7 +147,7 @@ Status stitchSequence(const BevArguments& arguments) {
     const double span = toSeconds(source.info().end_ns - source.info().start_ns);
     progress.update(toSeconds(frames->t_ns - source.info().start_ns) / std::max(span, 1e-9));
     if (frames->index % arguments.every != 0) continue;
-    const Status status = writeBev(stitcher.stitch(*frames), arguments.out);
+    const Status status = writer->write(stitcher.stitch(*frames));
     if (!status) return status;
     ++written;
   }
@@ -153,6 +192,10 @@ void addBevCommand(CLI::App& app, int& exit_code) {
       ->check(CLI::NonNegativeNumber);
   command->add_option("--rig", arguments->rig, "rig.yaml for single pictures");
   command->add_option("--image", arguments->images, "CAMERA=FILE, once per camera, with --rig");
+  command->add_flag("--overlay", arguments->overlay,
+                    "Lay the classes that the network sees over the pictures");
+  command->add_option("--network", arguments->network,
+                      "Class map of another network for --overlay (docs/networks.md)");
   command->add_option("--set", arguments->settings, "An option below, as metres_per_px=0.02");
   command->footer(std::string(kFooter) + "\n\nOptions for --set (name, default, meaning):\n" +
                   describeOptions(asOptions(arguments->options)));

@@ -18,6 +18,8 @@ void addBevCommand(CLI::App& app, int& exit_code);
 void addMapCommand(CLI::App& app, int& exit_code);
 void addRunCommand(CLI::App& app, int& exit_code);
 void addSimCommand(CLI::App& app, int& exit_code);
+void addBenchCommand(CLI::App& app, int& exit_code);
+void addBenchSemantics(CLI::App& bench, int& exit_code);
 
 /// Prints "parkade: MESSAGE" on stderr; returns the exit code 1.
 int fail(const Error& error);

@@ -51,6 +51,9 @@ int run(int argc, char** argv) {
 #ifdef PARKADE_WITH_BEV
   addBevCommand(app, exit_code);
 #endif
+#ifdef PARKADE_WITH_BENCH
+  addBenchCommand(app, exit_code);
+#endif
 #ifdef PARKADE_WITH_EVAL
   addEvalCommand(app, exit_code);
 #endif

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "parkade/cli/semantic_samples.hpp"
+#include "parkade/core/result.hpp"
+
+namespace parkade::cli {
+
+/// One part of `parkade bench semantics`: gets every sample in turn, and tells its table at the
+/// end.
+class SampleScore {
+ public:
+  virtual ~SampleScore() = default;
+
+  /// A garage's samples begin; what goes on over time starts anew.
+  virtual Status begin(const SemanticSampler& sampler) = 0;
+  virtual Status add(const SemanticSampler& sampler, const SemanticSample& sample) = 0;
+  /// The table for people.
+  [[nodiscard]] virtual std::string table() const = 0;
+  /// Its part of metrics.json, under keys of its own.
+  virtual void writeTo(nlohmann::json& metrics) const = 0;
+};
+
+struct SegmentationScoreOptions {
+  std::string bev_network;  ///< class map; empty: Parkade's own
+  std::string raw_network;  ///< the same for camera views; empty: Parkade's own where it is there
+  std::string pictures;     ///< folder for pictures with found and true labels; empty: none
+};
+
+/// Intersection over union of both networks' classes.
+Result<std::unique_ptr<SampleScore>> makeSegmentationScore(const SegmentationScoreOptions& options);
+
+}  // namespace parkade::cli
