@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Parkade authors
+# SPDX-License-Identifier: Apache-2.0
+"""Writes a trained network as ONNX with its class map, and compares OpenCV's numbers with torch's.
+
+    tools/train/export.py RUN/state.pt --out models/bev_segmentation
+
+Writes OUT.onnx and OUT.yaml. The comparison runs build/release/parkade_onnx_check (built with the
+tests) on random pictures; --check none skips it.
+"""
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+import warnings
+
+import numpy as np
+import onnx
+import torch
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from classes import NETWORKS  # noqa: E402
+from network import MEAN, SCALE, fold_batch_norm, make_network  # noqa: E402
+
+METRES_PER_PX = {"bev": 0.04}
+
+
+def load(path):
+    state = torch.load(path, map_location="cpu")
+    network = make_network(state["name"], len(state["classes"]))
+    network.load_state_dict(state["average"])
+    if state["classes"] != NETWORKS[state["name"]]["classes"]:
+        sys.exit(f"{path}: trained for other classes than classes.py lists")
+    return fold_batch_norm(network.eval()), state
+
+
+def export(network, name, path):
+    width, height = NETWORKS[name]["size"]
+    picture = torch.zeros(1, 3, height, width)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        torch.onnx.export(network, picture, path, opset_version=12, do_constant_folding=True,
+                          input_names=["picture"], output_names=["logits"])
+    model = onnx.load(path)
+    inline_constants(model.graph)
+    onnx.checker.check_model(model)
+    onnx.save(model, path)
+
+
+def inline_constants(graph):
+    """OpenCV 4.6 refuses Identity nodes of stored numbers, which the exporter makes of equal ones."""
+    stored = {value.name: value for value in graph.initializer}
+    for node in [n for n in graph.node if n.op_type == "Identity" and n.input[0] in stored]:
+        copy = onnx.TensorProto()
+        copy.CopyFrom(stored[node.input[0]])
+        copy.name = node.output[0]
+        graph.initializer.append(copy)
+        stored[copy.name] = copy
+        graph.node.remove(node)
+
+
+def write_class_map(name, path):
+    width, height = NETWORKS[name]["size"]
+    lines = [
+        "# What the network takes and gives (docs/networks.md). Written by tools/train/export.py.",
+        f"network: {os.path.basename(path)}.onnx",
+        "input:",
+        f"  width: {width}",
+        f"  height: {height}",
+        "  any_size: true",
+        "  channels: rgb",
+        f"  mean: {MEAN:g}",
+        f"  scale: {SCALE:.9g}",
+    ]
+    if name in METRES_PER_PX:
+        lines.append(f"  metres_per_px: {METRES_PER_PX[name]}")
+    lines.append("classes: [" + ", ".join(NETWORKS[name]["classes"]) + "]")
+    with open(path + ".yaml", "w") as file:
+        file.write("\n".join(lines) + "\n")
+
+
+def compare(network, name, onnx_path, program):
+    """Largest difference between OpenCV's and torch's logits, over two sizes of random input."""
+    width, height = NETWORKS[name]["size"]
+    worst = 0.0
+    with tempfile.TemporaryDirectory() as folder:
+        for w, h in ((width, height), (width - 64, height - 32)):
+            picture = np.random.default_rng(1).normal(size=(1, 3, h, w)).astype(np.float32)
+            files = [os.path.join(folder, key) for key in ("in", "out")]
+            picture.tofile(files[0])
+            subprocess.run([program, onnx_path, str(w), str(h), *files], check=True)
+            with torch.no_grad():
+                expected = network(torch.from_numpy(picture)).numpy()
+            found = np.fromfile(files[1], np.float32).reshape(expected.shape)
+            worst = max(worst, float(np.abs(found - expected).max()))
+            print(f"{w} x {h}: largest difference {np.abs(found - expected).max():.2g} of logits up "
+                  f"to {np.abs(expected).max():.3g}")
+    return worst
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("state", help="state.pt of a training")
+    parser.add_argument("--out", required=True, help="path without ending")
+    parser.add_argument("--check", default="build/release/parkade_onnx_check",
+                        help="program that runs the network in OpenCV, or none")
+    a = parser.parse_args()
+    network, state = load(a.state)
+    export(network, state["name"], a.out + ".onnx")
+    write_class_map(state["name"], a.out)
+    print(f"{a.out}.onnx: {os.path.getsize(a.out + '.onnx') / 1e6:.2f} MB, step {state['step']}")
+    if a.check != "none":
+        worst = compare(network, state["name"], a.out + ".onnx", a.check)
+        if worst > 1e-3:
+            sys.exit(f"OpenCV and torch differ by {worst:g}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,57 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Parkade authors
+# SPDX-License-Identifier: Apache-2.0
+"""Makes training samples with the simulator: stitched pictures and camera views with their labels.
+
+    tools/train/make_data.py --program build/release/parkade --out DATA --garages 0-99
+
+Every garage has its own layout, style, light, occupancy, people, rig and attitude errors, drawn from
+its seed. Goes on where an earlier call ended. Seeds from 5000 on are kept for tests.
+"""
+import argparse
+import os
+import random
+import subprocess
+import time
+
+
+def settings(seed, frames):
+    """What the stitcher knows less well than at its best, and where the car stands."""
+    rng = random.Random(seed)
+    return {
+        "frames": frames,
+        "coarse_light": "true",
+        "masks": "true" if rng.random() < 0.85 else "false",
+        "attitude_error_deg": 0.3 if rng.random() < 0.8 else 1.0,
+        "height_error_cm": 1.0,
+        "turn_deg": rng.choice([0.0, 5.0, 15.0]),
+        "shift_m": rng.choice([0.0, 0.3, 0.6]),
+    }
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", default="build/release/parkade", help="the parkade program")
+    parser.add_argument("--out", required=True, help="folder of samples")
+    parser.add_argument("--garages", default="0-99", help="FIRST-LAST garage seeds")
+    parser.add_argument("--frames", type=int, default=16, help="frame sets per garage [16]")
+    arguments = parser.parse_args()
+    first, last = (int(text) for text in arguments.garages.split("-"))
+    if last >= 5000:
+        parser.error("garage seeds from 5000 on are kept for tests")
+    for seed in range(first, last + 1):
+        if os.path.exists(os.path.join(arguments.out, f"g{seed:04d}", "done")):
+            continue
+        command = [arguments.program, "bench", "semantics", "--garages", f"random:{seed}-{seed}",
+                   "--samples", arguments.out]
+        for name, value in settings(seed, arguments.frames).items():
+            command += ["--set", f"{name}={value}"]
+        start = time.time()
+        result = subprocess.run(command, capture_output=True, text=True)
+        print(f"garage {seed}: {'ok' if result.returncode == 0 else result.stderr.strip()[-300:]}, "
+              f"{time.time() - start:.0f} s", flush=True)
+
+
+if __name__ == "__main__":
+    main()
