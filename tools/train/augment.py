@@ -86,6 +86,9 @@ def augment(rng, image, labels, floor_channel=None):
     image = image.astype(np.float32)
     shape = labels.shape
     black = image.sum(2, keepdims=True) < 1.0
+    if rng.random() < 0.3:  # nearly as it was drawn
+        image = image * np.exp(rng.normal(0, 0.15)) + rng.normal(0, 2, shape + (1,))
+        return np.where(black, 0, np.clip(image, 0, 255)).astype(np.uint8)
     if floor_channel is not None and rng.random() < 0.4:
         mask = ndimage.gaussian_filter((labels == floor_channel).astype(np.float32), 0.5)[..., None]
         tint = np.exp(rng.normal(0, 0.15) + rng.normal(0, 0.06, 3)).astype(np.float32)
