@@ -8,6 +8,7 @@
 #include <set>
 
 #include "parkade/sim/world/polygon.hpp"
+#include "parkade/sim/world/style.hpp"
 
 namespace parkade::sim {
 namespace {
@@ -107,6 +108,18 @@ TEST(GenerateTest, RandomGaragesAreValid) {
     EXPECT_LT(garage.area(), 12000.0);
     expectValid(garage);
     expectDrivable(garage);
+  }
+}
+
+TEST(GenerateTest, PaintShowsOnEveryFloor) {
+  const Eigen::Vector3f luminance(0.2126F, 0.7152F, 0.0722F);
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    const GarageStyle style = makeStyle("random", seed);
+    for (const Eigen::Vector3f& floor : {style.slot_floor, style.aisle_floor}) {
+      for (const Eigen::Vector3f& paint : {style.line_colour, style.arrow_colour}) {
+        EXPECT_GE(paint.dot(luminance), 1.69F * floor.dot(luminance)) << "seed " << seed;
+      }
+    }
   }
 }
 

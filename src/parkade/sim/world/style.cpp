@@ -117,6 +117,18 @@ void drawFloor(GarageStyle& style, Random random) {
   }
 }
 
+// Who paints lines picks a floor that shows them: light floors under dull white would hide them.
+void keepPaintVisible(GarageStyle& style) {
+  constexpr float kContrast = 1.7F;
+  const auto luminance = [](const Eigen::Vector3f& c) {
+    return 0.2126F * c.x() + 0.7152F * c.y() + 0.0722F * c.z();
+  };
+  const float paint = std::min(luminance(style.line_colour), luminance(style.arrow_colour));
+  for (Eigen::Vector3f* floor : {&style.slot_floor, &style.aisle_floor}) {
+    *floor *= std::min(1.0F, paint / (kContrast * luminance(*floor)));
+  }
+}
+
 void drawStructure(GarageStyle& style, Random random) {
   const std::array<Eigen::Vector3f, 7> lower = {{{0.04F, 0.30F, 0.30F},
                                                  {0.05F, 0.20F, 0.45F},
@@ -176,6 +188,7 @@ GarageStyle makeStyle(const std::string& name, std::uint64_t seed) {
   drawSizes(style, random.fork("sizes"));
   drawPaint(style, random.fork("paint"));
   drawFloor(style, random.fork("floor"));
+  keepPaintVisible(style);
   drawStructure(style, random.fork("structure"));
   drawLight(style, random.fork("light"));
   return style;
