@@ -18,7 +18,12 @@ const char* toString(Health health);
 /// Where the car is at one frame set, as a localiser emits it then (causally).
 struct PoseEstimate {
   TimeNs t_ns = 0;
+  /// Odom is fixed to the first vehicle pose and level as far as the start could tell (at rest:
+  /// the accelerometer's turn-on bias over gravity, about a degree); it does not turn when the
+  /// vertical becomes better known.
   SE3 T_odom_vehicle;
+  /// The vertical in odom as known now: turn odom by it where z has to point up.
+  Eigen::Vector3d up_odom = Eigen::Vector3d::UnitZ();
   Eigen::Vector3d velocity_odom = Eigen::Vector3d::Zero();  ///< of the vehicle's origin, m/s
   Eigen::Vector3d bias_gyro = Eigen::Vector3d::Zero();      ///< imu frame, rad/s
   Eigen::Vector3d bias_accel = Eigen::Vector3d::Zero();     ///< imu frame, m/s^2

@@ -37,7 +37,7 @@ VioEstimator::Impl::Impl(const Rig& rig, const VioOptions& options)
   T_vehicle_imu_ = rig.imu.T_vehicle_imu;
   const SE3 T_imu_vehicle = T_vehicle_imu_.inverse();
   window_.T_imu_vehicle = T_imu_vehicle;
-  window_.gravity = Eigen::Vector3d(0.0, 0.0, -options.gravity);
+  window_.gravity.vector = Eigen::Vector3d(0.0, 0.0, -options.gravity);
   for (const RigCamera& camera : rig.cameras) {
     window_.cameras.push_back({camera.camera, T_imu_vehicle * camera.T_vehicle_cam});
   }
@@ -102,7 +102,7 @@ void VioEstimator::Impl::addFrame(const TrackSet& tracks) {
   frame.t_ns = tracks.t_ns;
   setImu(frame, previous.t_ns, previous.bias);
   frame.bias = previous.bias;
-  frame.state = frame.imu->propagate(previous.state, previous.bias, window_.gravity);
+  frame.state = frame.imu->propagate(previous.state, previous.bias, window_.gravity.vector);
   frame.gyro = readings_.at(frame.t_ns).gyro;
 
   // How far the prediction may be off relative to the frame before it.
@@ -152,7 +152,10 @@ void VioEstimator::Impl::optimise(int max_iterations) {
       held ? solveAtRest(window_, selected, static_cast<std::size_t>(rest) + 1,
                          solveOptions(max_iterations))
            : solveWindow(window_, selected, solveOptions(max_iterations));
-  if (summary.has_covariance) newest_covariance_ = summary.newest_covariance;
+  if (summary.has_covariance) {
+    newest_covariance_ = summary.newest_covariance;
+    gravity_covariance_ = summary.gravity_covariance;
+  }
   int keyframes = 0;
   for (const WindowFrame& frame : window_.frames) keyframes += frame.keyframe ? 1 : 0;
   statistics.frames = static_cast<int>(window_.frames.size());
@@ -308,6 +311,7 @@ PoseEstimate VioEstimator::Impl::estimate() const {
   result.t_ns = frame.t_ns;
   result.T_odom_vehicle = SE3(frame.state.R_odom_imu, frame.state.p_odom) * window_.T_imu_vehicle;
   result.velocity_odom = originVelocity(frame, window_.T_imu_vehicle);
+  result.up_odom = -window_.gravity.vector.normalized();
   result.bias_gyro = frame.bias.gyro;
   result.bias_accel = frame.bias.accel;
   result.health = health_;
@@ -336,7 +340,7 @@ MotionPredictor VioEstimator::Impl::predictor() const {
   predictor.t_ns_ = newest.t_ns;
   predictor.state_ = newest.state;
   predictor.bias_ = newest.bias;
-  predictor.gravity_ = window_.gravity;
+  predictor.gravity_ = window_.gravity.vector;
   predictor.T_vehicle_imu_ = T_vehicle_imu_;
   for (const ImuReading& reading :
        readings_.between(newest.t_ns, std::max(newest.t_ns, readings_.lastTime()))) {

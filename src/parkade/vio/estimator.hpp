@@ -65,7 +65,8 @@ class VioEstimator {
   [[nodiscard]] std::vector<Landmark> landmarks() const;
 
   /// Every frame set since the start, re-estimated with all that came after it: frames of the
-  /// window as last solved, older ones corrected through the keyframes that left it.
+  /// window as last solved, older ones corrected through the keyframes that left it; z points up
+  /// as known at the end.
   [[nodiscard]] Trajectory finalTrajectory() const;
 
   [[nodiscard]] const VioStatistics& statistics() const;

@@ -51,14 +51,14 @@ class VioEstimator::Impl {
     [[nodiscard]] bool sharp() const;
     [[nodiscard]] double penalty() const;
   };
-  StartTrial tryStart(std::vector<NavState> states, const ImuBias& bias, Vector15d sigma);
+  StartTrial tryStart(std::vector<NavState> states, const ImuBias& bias, StartPrior prior);
   [[nodiscard]] std::vector<NavState> withSpeed(const std::vector<NavState>& states,
                                                 double speed) const;
   void enterWindow(const std::vector<NavState>& states, std::size_t first, const ImuBias& bias,
-                   const Vector15d& sigma);
+                   const StartPrior& prior);
   void restart(const std::string& reason);
   /// Moves states of a start about their own origin to where the last run of the window ended.
-  void continueFromLast(std::vector<NavState>& states, Vector15d& sigma) const;
+  void continueFromLast(std::vector<NavState>& states, StartPrior& prior) const;
 
   // Each frame set (estimator.cpp).
   void addFrame(const TrackSet& tracks);
@@ -104,7 +104,8 @@ class VioEstimator::Impl {
   std::deque<RecentTracks> recent_tracks_;
 
   PoseEstimate last_;
-  Matrix15d newest_covariance_ = Matrix15d::Zero();  ///< window's tangent
+  Matrix15d newest_covariance_ = Matrix15d::Zero();               ///< window's tangent
+  Eigen::Matrix2d gravity_covariance_ = Eigen::Matrix2d::Zero();  ///< rad^2
   int solved_landmarks_ = 0;
   TimeNs last_vision_ns_ = 0;
   Health health_ = Health::kInitialising;
@@ -114,6 +115,8 @@ class VioEstimator::Impl {
   NavState last_run_state_;
   TimeNs last_run_t_ns_ = 0;
   Matrix15d last_run_covariance_ = Matrix15d::Zero();
+  Eigen::Vector3d last_run_gravity_ = Eigen::Vector3d(0.0, 0.0, -9.81);
+  double last_run_gravity_sigma_ = 0.0;  ///< rad
   std::vector<Landmark> last_landmarks_;
 };
 

@@ -10,7 +10,7 @@ namespace parkade {
 namespace {
 
 constexpr double kGaugePosition = 1e-4;  // m: the first pose is where it is by definition
-constexpr double kGaugeHeading = 1e-5;   // rad
+constexpr double kGaugeRotation = 1e-5;  // rad
 constexpr std::size_t kMinStartFrames = 5;
 constexpr double kMinRestSpan = 0.25;  // s of quiet readings
 constexpr int kStartIterations = 15;
@@ -77,20 +77,20 @@ bool VioEstimator::Impl::startAtRest() {
       check.mean_gyro.norm() > 4.0 * options_.start_up.bias_gyro_sigma) {
     return false;
   }
-  // The accelerometer's bias and the tilt cannot be told apart at rest: the tilt is taken as seen,
-  // and both are left as uncertain as the bias is.
+  // The accelerometer's bias and the vertical cannot be told apart at rest: the odom frame is made
+  // level as it seems, and both are left as uncertain as the bias is.
   ImuBias bias;
   bias.gyro = check.mean_gyro;
-  const double tilt = options_.start_up.bias_accel_sigma / options_.gravity;
-  Vector15d sigma;
-  sigma << Eigen::Vector3d::Constant(kGaugePosition), tilt, tilt, kGaugeHeading,
-      Eigen::Vector3d::Constant(5e-3), Eigen::Vector3d::Constant(1e-3),
-      Eigen::Vector3d::Constant(options_.start_up.bias_accel_sigma);
   const double span = std::max(toSeconds(now - begin), 0.1);
-  sigma.segment<3>(9).setConstant(noise_.gyroscope_noise_density / std::sqrt(span) + 1e-4);
+  StartPrior prior;
+  prior.sigma << Eigen::Vector3d::Constant(kGaugePosition),
+      Eigen::Vector3d::Constant(kGaugeRotation), Eigen::Vector3d::Constant(5e-3),
+      Eigen::Vector3d::Constant(noise_.gyroscope_noise_density / std::sqrt(span) + 1e-4),
+      Eigen::Vector3d::Constant(options_.start_up.bias_accel_sigma);
+  prior.gravity_sigma = options_.start_up.bias_accel_sigma / options_.gravity;
   std::vector<NavState> states{alignAtRest(check.mean_accel, window_.T_imu_vehicle)};
-  continueFromLast(states, sigma);
-  enterWindow(states, start_frames_.size() - 1, bias, sigma);
+  continueFromLast(states, prior);
+  enterWindow(states, start_frames_.size() - 1, bias, prior);
   still_ = true;
   still_anchor_id_ = window_.frames.back().id;
   window_.frames.back().still_since = still_anchor_id_;
@@ -112,18 +112,18 @@ bool VioEstimator::Impl::startInMotion() {
     start_reason_ = fmt::format("too few features followed: {}", alignment.num_features);
     return false;
   }
-  Vector15d sigma = Vector15d::Zero();
-  sigma.head<3>().setConstant(kGaugePosition);
-  sigma(5) = kGaugeHeading;
-  sigma.segment<3>(9).setConstant(options_.start_up.bias_gyro_sigma);
-  sigma.segment<3>(12).setConstant(options_.start_up.bias_accel_sigma);
+  StartPrior prior;
+  prior.sigma << Eigen::Vector3d::Constant(kGaugePosition),
+      Eigen::Vector3d::Constant(kGaugeRotation), Eigen::Vector3d::Zero(),
+      Eigen::Vector3d::Constant(options_.start_up.bias_gyro_sigma),
+      Eigen::Vector3d::Constant(options_.start_up.bias_accel_sigma);
   const bool late = span >= options_.start_up.max_span_s;
-  StartTrial best = tryStart(alignment.states, alignment.bias, sigma);
+  StartTrial best = tryStart(alignment.states, alignment.bias, prior);
   if (!best.sharp() && late) {
     // Even motion hardly tells its scale from few images, and noise then shrinks the linear
     // solution: other speeds along its direction are tried, and the most plausible is kept.
     for (const double speed : kTrialSpeeds) {
-      StartTrial trial = tryStart(withSpeed(alignment.states, speed), alignment.bias, sigma);
+      StartTrial trial = tryStart(withSpeed(alignment.states, speed), alignment.bias, prior);
       if (trial.fits() && (!best.fits() || trial.penalty() < best.penalty())) {
         best = std::move(trial);
       }
@@ -132,6 +132,7 @@ bool VioEstimator::Impl::startInMotion() {
   if (best.fits() && (best.sharp() || late)) {
     window_ = std::move(best.window);
     newest_covariance_ = best.summary.newest_covariance;
+    gravity_covariance_ = best.summary.gravity_covariance;
     statistics.landmarks = best.landmarks;
     statistics.observations = best.summary.observations;
     logInfo("started in motion: {} frames, {} landmarks, speed {:.2f} +- {:.2f} m/s, cost {:.2f}",
@@ -152,9 +153,9 @@ bool VioEstimator::Impl::startInMotion() {
 
 // The window that grows from given states of the start's frames.
 VioEstimator::Impl::StartTrial VioEstimator::Impl::tryStart(std::vector<NavState> states,
-                                                            const ImuBias& bias, Vector15d sigma) {
-  continueFromLast(states, sigma);
-  enterWindow(states, 0, bias, sigma);
+                                                            const ImuBias& bias, StartPrior prior) {
+  continueFromLast(states, prior);
+  enterWindow(states, 0, bias, prior);
   // The biases' prior is about zero, not about the alignment.
   window_.start.bias = ImuBias{};
   features_.triangulateNew(window_);
@@ -213,7 +214,7 @@ std::vector<NavState> VioEstimator::Impl::withSpeed(const std::vector<NavState>&
 }
 
 void VioEstimator::Impl::enterWindow(const std::vector<NavState>& states, std::size_t first,
-                                     const ImuBias& bias, const Vector15d& sigma) {
+                                     const ImuBias& bias, const StartPrior& prior) {
   window_.frames.clear();
   window_.features.clear();
   window_.prior = {};
@@ -232,17 +233,23 @@ void VioEstimator::Impl::enterWindow(const std::vector<NavState>& states, std::s
     window_.frames.push_back(frame);
     features_.add(window_, start.observations);
   }
+  window_.start = prior;
   window_.start.frame_id = window_.frames.front().id;
   window_.start.state = window_.frames.front().state;
   window_.start.bias = bias;
-  window_.start.sigma = sigma;
+  window_.gravity = WindowGravity{};
+  window_.gravity.vector = options_.gravity * prior.gravity.normalized();
 }
 
-void VioEstimator::Impl::continueFromLast(std::vector<NavState>& states, Vector15d& sigma) const {
+void VioEstimator::Impl::continueFromLast(std::vector<NavState>& states, StartPrior& prior) const {
   if (!has_last_run_) return;
   // Heading and position go on from where the last window ended; what happened between is unknown.
+  // The states are level; odom may not be, so they are tilted as its vertical is known to be.
+  const SO3 tilt(Eigen::Quaterniond::FromTwoVectors(-Eigen::Vector3d::UnitZ(), last_run_gravity_));
   const SE3 last = SE3(last_run_state_.R_odom_imu, last_run_state_.p_odom) * window_.T_imu_vehicle;
-  const SO3 turn = SO3::fromYawPitchRoll(last.rotation().yaw(), 0.0, 0.0);
+  const double heading = (tilt.inverse() * last.rotation()).yaw();
+  const SO3 turn = tilt * SO3::fromYawPitchRoll(heading, 0.0, 0.0);
+  prior.gravity = last_run_gravity_;
   const double away = std::max(0.0, toSeconds(start_frames_.front().t_ns - last_run_t_ns_));
   const Eigen::Vector3d offset = last.translation() + away * last_run_state_.v_odom;
   for (NavState& state : states) {
@@ -251,12 +258,15 @@ void VioEstimator::Impl::continueFromLast(std::vector<NavState>& states, Vector1
     state.v_odom = turn * state.v_odom;
   }
   for (int i = 0; i < 3; ++i) {
-    sigma(i) = std::sqrt(last_run_covariance_(i, i)) +
-               away * (0.5 + 0.5 * last_run_state_.v_odom.norm()) + kGaugePosition;
+    prior.sigma(i) = std::sqrt(last_run_covariance_(i, i)) +
+                     away * (0.5 + 0.5 * last_run_state_.v_odom.norm()) + kGaugePosition;
   }
   const Eigen::Matrix3d R = last_run_state_.R_odom_imu.matrix();
   const Eigen::Matrix3d rotation = R * last_run_covariance_.block<3, 3>(3, 3) * R.transpose();
-  sigma(5) = std::sqrt(rotation(2, 2)) + 0.1 * away + kGaugeHeading;
+  prior.sigma(5) = std::sqrt(rotation(2, 2)) + 0.1 * away + kGaugeRotation;
+  // The tilt of the first pose is as uncertain as what the start knows of the vertical.
+  prior.sigma.segment<2>(3).setConstant(prior.gravity_sigma);
+  prior.gravity_sigma = last_run_gravity_sigma_;
 }
 
 void VioEstimator::Impl::restart(const std::string& reason) {
@@ -269,6 +279,8 @@ void VioEstimator::Impl::restart(const std::string& reason) {
       last_run_t_ns_ = good.t_ns;
       last_run_covariance_ =
           newest_covariance_.allFinite() ? newest_covariance_ : last_run_covariance_;
+      last_run_gravity_ = window_.gravity.vector;
+      last_run_gravity_sigma_ = std::sqrt(gravity_covariance_.trace()) + kGaugeRotation;
       has_last_run_ = true;
     }
     window_.frames.pop_back();

@@ -90,12 +90,13 @@ TEST(VioEstimator, DISABLED_Explore) {
     fmt::print(
         "seed {} {:.0f} m frames {} poses {} first {:.2f} rmse {:.4f} final {:.4f} ({}) max {:.4f} "
         "end "
-        "{:.4f} ({:.3f} %) yaw max {:.5f} end {:.5f} nees p {:.2f} y {:.2f} end p {:.2f} y {:.2f} "
+        "{:.4f} ({:.3f} %) yaw max {:.5f} end {:.5f} tilt {:.5f} nees p {:.2f} y {:.2f} end p "
+        "{:.2f} y {:.2f} "
         "ms {:.1f}\n",
         seed, drive.distance, drive.frames.size(), r.poses, r.first_pose, r.rmse,
         std::sqrt(final_squared / static_cast<double>(final_trajectory.size())),
         final_trajectory.size(), r.max_error, r.end_error, 100.0 * r.end_error / drive.distance,
-        r.max_yaw_error, r.end_yaw_error, r.mean_nees_position, r.mean_nees_yaw,
+        r.max_yaw_error, r.end_yaw_error, r.end_tilt_error, r.mean_nees_position, r.mean_nees_yaw,
         r.end_nees_position, r.end_nees_yaw, 1e3 * s / static_cast<double>(drive.frames.size()));
     std::fflush(stdout);
     mean_position += r.mean_nees_position / seeds;

@@ -14,52 +14,30 @@ constexpr int kV = Preintegration::kVelocity;
 constexpr int kG = Preintegration::kBiasGyro;
 constexpr int kA = Preintegration::kBiasAccel;
 
-// How a frame moves when the whole window turns about the vertical, at its point of linearisation.
-Vector15d headingDirection(const WindowFrame& frame) {
-  const NavState& lin = frame.jacobianState();
-  const Vector3d up = Vector3d::UnitZ();
-  Vector15d n = Vector15d::Zero();
-  n.segment<3>(kP) = up.cross(lin.p_odom);
-  n.segment<3>(kR) = lin.R_odom_imu.inverse() * up;
-  n.segment<3>(kV) = up.cross(lin.v_odom);
-  return n;
-}
-
-// Readings are so sharp that Jacobians at an old point of linearisation mislead the solver (they
-// contradict the present state by many sigmas once tilt and bias are corrected). They are taken at
-// the present state instead, and freed of the one thing that this would make up: knowledge of the
-// heading. The rotation columns of the first frame take the difference, so that a turn of the
-// window about the vertical at its points of linearisation has no effect at all; displacements have
-// none by themselves. docs/math/marginalisation.md, eq. (5).
-void holdHeading(const WindowFrame& begin, const WindowFrame& end, Matrix15d& by_begin,
-                 Matrix15d& by_end) {
-  if (begin.linearised) {
-    by_begin.middleCols<3>(kR) *= SO3::rightJacobian(begin.delta.segment<3>(kR));
-  }
-  if (end.linearised) {
-    by_end.middleCols<3>(kR) *= SO3::rightJacobian(end.delta.segment<3>(kR));
-  }
-  const Vector15d n_begin = headingDirection(begin);
-  const Vector15d effect = by_begin * n_begin + by_end * headingDirection(end);
-  by_begin.middleCols<3>(kR) -= effect * n_begin.segment<3>(kR).transpose();
-}
 }  // namespace
 
-Vector15d imuResidual(const WindowFrame& begin, const WindowFrame& end, const Vector3d& gravity,
-                      Matrix15d* d_res_d_begin, Matrix15d* d_res_d_end) {
+Vector15d imuResidual(const WindowFrame& begin, const WindowFrame& end,
+                      const WindowGravity& gravity, Matrix15d* d_res_d_begin,
+                      Matrix15d* d_res_d_end, Matrix15x2d* d_res_d_gravity) {
   const Preintegration& imu = *end.imu;
-  const Vector15d r = end.imu_sqrt_information *
-                      imu.residual(begin.state, begin.bias, end.state, end.bias, gravity);
-  if (d_res_d_begin != nullptr && d_res_d_end != nullptr) {
+  const auto whiten = end.imu_sqrt_information.triangularView<Eigen::Lower>();
+  const Vector15d r =
+      whiten * imu.residual(begin.state, begin.bias, end.state, end.bias, gravity.vector);
+  if (d_res_d_begin != nullptr && d_res_d_end != nullptr && d_res_d_gravity != nullptr) {
+    // All at the first estimates, so that a common motion of frames and gravity has no effect.
     Matrix15d by_begin;
     Matrix15d by_end;
-    (void)imu.residual(begin.state, begin.bias, end.state, end.bias, gravity, &by_begin, &by_end);
-    if (begin.linearised || end.linearised) {
-      holdHeading(begin, end, by_begin, by_end);
-    }
-    const auto whiten = end.imu_sqrt_information.triangularView<Eigen::Lower>();
+    (void)imu.residual(begin.jacobianState(), begin.jacobianBias(), end.jacobianState(),
+                       end.jacobianBias(), gravity.jacobianVector(), &by_begin, &by_end);
+    const double t = imu.duration();
+    const Eigen::Matrix<double, 3, 2> pull =
+        begin.jacobianState().R_odom_imu.matrix().transpose() * gravity.basis();
+    Matrix15x2d by_gravity = Matrix15x2d::Zero();
+    by_gravity.middleRows<3>(kP) = -0.5 * t * t * pull;
+    by_gravity.middleRows<3>(kV) = -t * pull;
     *d_res_d_begin = whiten * by_begin;
     *d_res_d_end = whiten * by_end;
+    *d_res_d_gravity = whiten * by_gravity;
   }
   return r;
 }
@@ -132,6 +110,17 @@ Vector15d startResidual(const WindowFrame& frame, const StartPrior& prior,
     *d_res_d_frame = weight.asDiagonal() * *d_res_d_frame;
   }
   return r;
+}
+
+Eigen::Vector2d gravityResidual(const WindowGravity& gravity, const StartPrior& prior,
+                                Eigen::Matrix2d* d_res_d_gravity) {
+  const double weight = prior.gravity_sigma > 0.0 ? 1.0 / prior.gravity_sigma : 0.0;
+  const double magnitude = prior.gravity.norm();
+  const Eigen::Matrix<double, 3, 2> across = tangentBasis(prior.gravity / magnitude);
+  if (d_res_d_gravity != nullptr) {
+    *d_res_d_gravity = weight / magnitude * across.transpose() * gravity.basis();
+  }
+  return weight / magnitude * across.transpose() * (gravity.vector - prior.gravity);
 }
 
 }  // namespace parkade

@@ -9,11 +9,12 @@
 namespace parkade {
 
 // Residuals of single frames and pairs of frames, whitened (unit variance), with Jacobians by the
-// frames' tangents taken at jacobianState(), but for imuResidual(); see docs/math/residuals.md.
+// frames' tangents taken at jacobianState(); see docs/math/residuals.md.
 
 using Vector9d = Eigen::Matrix<double, 9, 1>;
 using Matrix9x15d = Eigen::Matrix<double, 9, 15>;
 using Matrix3x15d = Eigen::Matrix<double, 3, 15>;
+using Matrix15x2d = Eigen::Matrix<double, 15, 2>;
 
 /// How well a resting car stays where it is.
 struct StillSigma {
@@ -24,8 +25,8 @@ struct StillSigma {
 
 /// IMU readings between two frames (eq. 1).
 Vector15d imuResidual(const WindowFrame& begin, const WindowFrame& end,
-                      const Eigen::Vector3d& gravity, Matrix15d* d_res_d_begin = nullptr,
-                      Matrix15d* d_res_d_end = nullptr);
+                      const WindowGravity& gravity, Matrix15d* d_res_d_begin = nullptr,
+                      Matrix15d* d_res_d_end = nullptr, Matrix15x2d* d_res_d_gravity = nullptr);
 
 /// A car at rest: same pose as where it came to rest, no velocity (eq. 5).
 Vector9d stillResidual(const WindowFrame& rest, const WindowFrame& now, const StillSigma& sigma,
@@ -36,8 +37,12 @@ Vector9d stillResidual(const WindowFrame& rest, const WindowFrame& now, const St
 Eigen::Vector3d bodyVelocityResidual(const WindowFrame& frame, const SE3& T_imu_vehicle,
                                      Matrix3x15d* d_res_d_frame = nullptr);
 
-/// The first frame's position, heading and what is known of the rest (eq. 7).
+/// The first frame's pose and what is known of the rest (eq. 7).
 Vector15d startResidual(const WindowFrame& frame, const StartPrior& prior,
                         Matrix15d* d_res_d_frame = nullptr);
+
+/// What the start knows of the vertical (eq. 8); zero where it knows nothing.
+Eigen::Vector2d gravityResidual(const WindowGravity& gravity, const StartPrior& prior,
+                                Eigen::Matrix2d* d_res_d_gravity = nullptr);
 
 }  // namespace parkade

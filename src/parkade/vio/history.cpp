@@ -16,6 +16,11 @@ SE3 moved(const NavState& state, const Vector15d& delta) {
           state.p_odom + delta.segment<3>(Preintegration::kPosition)};
 }
 
+// Turns gravity downwards, without a turn about the vertical.
+SO3 levelOf(const Eigen::Vector3d& gravity) {
+  return SO3(Eigen::Quaterniond::FromTwoVectors(gravity, -Eigen::Vector3d::UnitZ()));
+}
+
 }  // namespace
 
 void VioHistory::addDropped(const WindowFrame& frame, const WindowFrame& reference) {
@@ -51,7 +56,7 @@ std::map<int, VioHistory::Plain> VioHistory::smoothed(const Window& window) cons
   }
   std::map<int, Plain> poses;
   for (auto it = conditionals_.rbegin(); it != conditionals_.rend(); ++it) {
-    Vector15d delta = -it->offset;
+    Vector15d delta = -it->offset - it->gain.rightCols<2>() * window.gravity.delta;
     for (std::size_t k = 0; k < it->frame_ids.size(); ++k) {
       const auto known = deltas.find(it->frame_ids[k]);
       if (known == deltas.end()) continue;
@@ -69,15 +74,16 @@ Trajectory VioHistory::trajectory(const Window& window) const {
   for (const WindowFrame& frame : window.frames) {
     poses.emplace(frame.id, Plain{frame.t_ns, poseOf(frame.state)});
   }
+  const SE3 level(levelOf(window.gravity.vector), Eigen::Vector3d::Zero());
   Trajectory trajectory;
   for (const auto& [id, pose] : poses) {
-    trajectory.push_back({pose.t_ns, pose.T_odom_imu * window.T_imu_vehicle});
+    trajectory.push_back({pose.t_ns, level * pose.T_odom_imu * window.T_imu_vehicle});
   }
   for (const Relative& relative : relatives_) {
     const auto reference = poses.find(relative.reference_id);
     if (reference == poses.end()) continue;
-    trajectory.push_back({relative.t_ns, reference->second.T_odom_imu * relative.T_reference_frame *
-                                             window.T_imu_vehicle});
+    trajectory.push_back({relative.t_ns, level * reference->second.T_odom_imu *
+                                             relative.T_reference_frame * window.T_imu_vehicle});
   }
   std::sort(trajectory.begin(), trajectory.end(),
             [](const StampedPose& a, const StampedPose& b) { return a.t_ns < b.t_ns; });

@@ -27,7 +27,8 @@ class VioHistory {
   /// The window is given up: its frames and all before become plain poses.
   void freeze(const Window& window);
 
-  /// All frames in the order of time, given the window as it is now; T_odom_imu * T_imu_vehicle.
+  /// All vehicle poses in the order of time, given the window as it is now, turned about the
+  /// odom frame's origin so that z points up.
   [[nodiscard]] Trajectory trajectory(const Window& window) const;
 
  private:

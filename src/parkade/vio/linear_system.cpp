@@ -12,6 +12,7 @@ namespace parkade {
 namespace {
 
 constexpr int kState = 15;
+constexpr int kGravity = 2;
 // Noise may push a far point beyond infinity. Stopping it at zero would pull all far points, and
 // with them the scale, to one side; the projection is smooth there.
 constexpr double kMinInverseDistance = -0.1;
@@ -41,8 +42,8 @@ FactorSelection FactorSelection::none(const Window& window) {
 
 double LinearSystem::linearise(const Window& window, const FactorSelection& selection) {
   const int count = static_cast<int>(window.frames.size());
-  H_.setZero(kState * count, kState * count);
-  b_.setZero(kState * count);
+  H_.setZero(kState * count + kGravity, kState * count + kGravity);
+  b_.setZero(kState * count + kGravity);
   cost_ = 0.0;
   num_observations_ = 0;
   landmarks_.clear();
@@ -65,7 +66,8 @@ void LinearSystem::addPrior(const Window& window) {
   const WindowPrior& prior = window.prior;
   const int count = static_cast<int>(prior.frame_ids.size());
   if (count == 0) return;
-  Eigen::VectorXd delta(kState * count);
+  Eigen::VectorXd delta(kState * count + kGravity);
+  delta.tail<kGravity>() = window.gravity.delta;
   std::vector<int> index(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     index[static_cast<std::size_t>(i)] =
@@ -85,7 +87,11 @@ void LinearSystem::addPrior(const Window& window) {
       H_.block<kState, kState>(row, column) +=
           prior.H.block<kState, kState>(kState * i, kState * j);
     }
+    H_.block<kGravity, kState>(H_.rows() - kGravity, row) +=
+        prior.H.block<kGravity, kState>(kState * count, kState * i);
   }
+  b_.tail<kGravity>() += gradient.tail<kGravity>();
+  H_.bottomRightCorner<kGravity, kGravity>() += prior.H.bottomRightCorner<kGravity, kGravity>();
 }
 
 void LinearSystem::addPair(int i, int j, const Matrix15d& hii, const Matrix15d& hji,
@@ -102,12 +108,18 @@ void LinearSystem::addImu(const Window& window, const FactorSelection& selection
     const int j = static_cast<int>(k);
     Matrix15d by_i;
     Matrix15d by_j;
-    const Vector15d r =
-        imuResidual(window.frames[k - 1], window.frames[k], window.gravity, &by_i, &by_j);
+    Matrix15x2d by_gravity;
+    const Vector15d r = imuResidual(window.frames[k - 1], window.frames[k], window.gravity, &by_i,
+                                    &by_j, &by_gravity);
     cost_ += 0.5 * r.squaredNorm();
     b_.segment<kState>(kState * i).noalias() += by_i.transpose() * r;
     b_.segment<kState>(kState * j).noalias() += by_j.transpose() * r;
     addPair(i, j, by_i.transpose() * by_i, by_j.transpose() * by_i, by_j.transpose() * by_j);
+    const Eigen::Index g = H_.rows() - kGravity;
+    b_.tail<kGravity>().noalias() += by_gravity.transpose() * r;
+    H_.block<kGravity, kState>(g, kState * i).noalias() += by_gravity.transpose() * by_i;
+    H_.block<kGravity, kState>(g, kState * j).noalias() += by_gravity.transpose() * by_j;
+    H_.bottomRightCorner<kGravity, kGravity>().noalias() += by_gravity.transpose() * by_gravity;
   }
 }
 
@@ -121,6 +133,11 @@ void LinearSystem::addMotion(const Window& window, const FactorSelection& select
       cost_ += 0.5 * r.squaredNorm();
       b_.segment<kState>(kState * j).noalias() += by_frame.transpose() * r;
       H_.block<kState, kState>(kState * j, kState * j) += by_frame.transpose() * by_frame;
+      Eigen::Matrix2d by_gravity;
+      const Eigen::Vector2d tilt = gravityResidual(window.gravity, window.start, &by_gravity);
+      cost_ += 0.5 * tilt.squaredNorm();
+      b_.tail<kGravity>() += by_gravity.transpose() * tilt;
+      H_.bottomRightCorner<kGravity, kGravity>() += by_gravity.transpose() * by_gravity;
     }
     if (selection.unary[k] != 0 && frame.body_velocity_sigma.maxCoeff() > 0.0) {
       Matrix3x15d by_frame;

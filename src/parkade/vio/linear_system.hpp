@@ -16,7 +16,7 @@ struct FactorSelection {
   bool prior = true;
   std::vector<char> imu;    ///< per frame: readings since the frame before it
   std::vector<char> still;  ///< per frame: rest since still_since
-  std::vector<char> unary;  ///< per frame: body velocity, start prior
+  std::vector<char> unary;  ///< per frame: body velocity, start prior (with gravity's)
   std::vector<WindowFeature*> features;
 
   /// Everything in the window but features.
@@ -26,7 +26,7 @@ struct FactorSelection {
 
 /// The cost of a window, squared about its present state: gradient and Gauss-Newton matrix of the
 /// frames, with the landmarks apart so that they can be eliminated (docs/math/residuals.md, eq. 8).
-/// The robust loss enters as weights. Frame i has rows 15 i to 15 i + 14.
+/// The robust loss enters as weights. Frame i has rows 15 i to 15 i + 14, gravity the last two.
 class LinearSystem {
  public:
   LinearSystem(double huber, const StillSigma& still) : huber_(huber), still_(still) {}
@@ -37,11 +37,13 @@ class LinearSystem {
   /// The cost at the present state with the selection last linearised.
   [[nodiscard]] double cost() const { return cost_; }
   [[nodiscard]] int numObservations() const { return num_observations_; }
-  [[nodiscard]] const Eigen::VectorXd& gradient() const { return b_; }  ///< of the frames
+  /// Of frames and gravity.
+  [[nodiscard]] const Eigen::VectorXd& gradient() const { return b_; }
 
   /// Eliminates the landmarks, with `damping` times the diagonal added to them.
   void reduce(double damping);
-  /// Valid after reduce(): frames only, lower triangle. The prior counts as a term like others.
+  /// Valid after reduce(): frames and gravity, lower triangle. The prior counts as a term like
+  /// others.
   [[nodiscard]] const Eigen::MatrixXd& reducedH() const { return reduced_H_; }
   [[nodiscard]] const Eigen::VectorXd& reducedB() const { return reduced_b_; }
 

@@ -11,6 +11,7 @@ namespace parkade {
 namespace {
 
 constexpr Eigen::Index kState = 15;
+constexpr Eigen::Index kGravity = 2;
 
 // Removes a frame's observations; features keep their point through another anchor, if any.
 void eraseObservations(Window& window, int frame_id) {
@@ -87,47 +88,39 @@ FrameConditional marginaliseFrame(Window& window, int frame_id,
   const std::vector<std::size_t> involved = involvedFrames(window, selection, index);
   for (const std::size_t k : involved) window.frames[k].fixLinearisation();
 
-  // 1. All terms, landmarks eliminated, as a quadratic about the points of linearisation.
+  window.gravity.fixLinearisation();
+
+  // 1. All terms, landmarks eliminated, as a quadratic about the points of linearisation. The frame
+  // that leaves goes first, gravity last.
   LinearSystem system(huber, still);
   system.linearise(window, selection);
   system.reduce(0.0);
-  const auto rest_count = static_cast<Eigen::Index>(involved.size()) - 1;
-  Eigen::MatrixXd H(kState * (rest_count + 1), kState * (rest_count + 1));
-  Eigen::VectorXd b(H.rows());
-  Eigen::VectorXd delta(H.rows());
-  // The frame that leaves goes first.
   std::vector<std::size_t> order{index};
   for (const std::size_t k : involved) {
     if (k != index) order.push_back(k);
   }
+  const auto size = kState * static_cast<Eigen::Index>(order.size()) + kGravity;
+  std::vector<Eigen::Index> from;
+  Eigen::VectorXd delta(size);
   for (std::size_t i = 0; i < order.size(); ++i) {
-    const auto row = kState * static_cast<Eigen::Index>(i);
-    const auto from_row = kState * static_cast<Eigen::Index>(order[i]);
-    b.segment<kState>(row) = system.reducedB().segment<kState>(from_row);
-    delta.segment<kState>(row) = window.frames[order[i]].delta;
-    for (std::size_t j = 0; j < order.size(); ++j) {
-      const auto column = kState * static_cast<Eigen::Index>(j);
-      const auto from_column = kState * static_cast<Eigen::Index>(order[j]);
-      if (from_row > from_column) {
-        H.block<kState, kState>(row, column) =
-            system.reducedH().block<kState, kState>(from_row, from_column);
-      } else if (from_row < from_column) {
-        H.block<kState, kState>(row, column) =
-            system.reducedH().block<kState, kState>(from_column, from_row).transpose();
-      } else {
-        H.block<kState, kState>(row, column) = system.reducedH()
-                                                   .block<kState, kState>(from_row, from_row)
-                                                   .selfadjointView<Eigen::Lower>();
-      }
+    delta.segment<kState>(kState * static_cast<Eigen::Index>(i)) = window.frames[order[i]].delta;
+    for (Eigen::Index row = 0; row < kState; ++row) {
+      from.push_back(kState * static_cast<Eigen::Index>(order[i]) + row);
     }
   }
-  b -= H * delta;
+  delta.tail<kGravity>() = window.gravity.delta;
+  for (Eigen::Index row = 0; row < kGravity; ++row) {
+    from.push_back(system.reducedH().rows() - kGravity + row);
+  }
+  const Eigen::MatrixXd full = system.reducedH().selfadjointView<Eigen::Lower>();
+  const Eigen::MatrixXd H = full(from, from);
+  const Eigen::VectorXd b = system.reducedB()(from) - H * delta;
 
   // 2. The frame itself is eliminated.
   Matrix15d leaving = H.topLeftCorner<kState, kState>();
   leaving.diagonal() *= 1.0 + 1e-12;
   const Eigen::LDLT<Matrix15d> ldlt(leaving);
-  const Eigen::Index rest = kState * rest_count;
+  const Eigen::Index rest = size - kState;
   FrameConditional conditional;
   conditional.frame_id = frame_id;
   conditional.t_ns = window.frames[index].t_ns;

@@ -125,10 +125,18 @@ TEST(FactorJacobian, ImuIsThatOfFiniteDifferences) {
   }
   end.imu = sum;
   end.imu_sqrt_information = Matrix15d::Identity();
-  const Vector3d gravity(0.0, 0.0, -9.81);
+  WindowGravity gravity;
+  gravity.apply({0.02, -0.03});
   Matrix15d by_begin;
   Matrix15d by_end;
-  (void)imuResidual(begin, end, gravity, &by_begin, &by_end);
+  Matrix15x2d by_gravity;
+  (void)imuResidual(begin, end, gravity, &by_begin, &by_end, &by_gravity);
+  const auto pulled = [&](const Eigen::VectorXd& x) {
+    WindowGravity other = gravity;
+    other.apply(x);
+    return Eigen::VectorXd(imuResidual(begin, end, other));
+  };
+  EXPECT_THAT(by_gravity, EigenMatrixNear(numericJacobian(pulled, Eigen::VectorXd::Zero(2)), 1e-6));
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(15);
   EXPECT_THAT(by_begin, EigenMatrixNear(numericJacobian(
                                             [&](const Eigen::VectorXd& x) {
@@ -184,7 +192,19 @@ TEST(FactorJacobian, RestSpeedAndStartAreThoseOfFiniteDifferences) {
                                         1e-6));
   EXPECT_EQ(by_frame.row(2).norm(), 0.0);
 
+  WindowGravity gravity;
+  gravity.apply({0.02, -0.03});
   StartPrior prior;
+  prior.gravity_sigma = 0.01;
+  Eigen::Matrix2d by_gravity;
+  (void)gravityResidual(gravity, prior, &by_gravity);
+  const auto tilted = [&](const Eigen::VectorXd& x) {
+    WindowGravity other = gravity;
+    other.apply(x);
+    return Eigen::VectorXd(gravityResidual(other, prior));
+  };
+  EXPECT_THAT(by_gravity, EigenMatrixNear(numericJacobian(tilted, Eigen::VectorXd::Zero(2)), 1e-6));
+
   prior.state = rest.state;
   prior.sigma.setConstant(0.5);
   prior.sigma(7) = 0.0;
@@ -197,6 +217,52 @@ TEST(FactorJacobian, RestSpeedAndStartAreThoseOfFiniteDifferences) {
                                   },
                                   zero),
                               1e-6));
+}
+
+TEST(FactorJacobian, ImuFirstEstimatesLeaveACommonMotionWithoutEffect) {
+  Random random(11);
+  WindowFrame begin = drawFrame(random, 0);
+  WindowFrame end = drawFrame(random, 1);
+  WindowGravity gravity;
+  Preintegration sum(ImuNoise{}, begin.bias);
+  for (int i = 0; i < 40; ++i) {
+    sum.integrate(
+        {i * 5 * kNsPerMs, draw(random, 0.2), draw(random, 0.2) + Vector3d(0, 0, 9.8)},
+        {(i + 1) * 5 * kNsPerMs, draw(random, 0.2), draw(random, 0.2) + Vector3d(0, 0, 9.8)},
+        kNsPerSecond);
+  }
+  // The first estimates fit the readings, as those of a solved window do.
+  end.state = sum.propagate(begin.state, begin.bias, gravity.vector);
+  end.bias = begin.bias;
+  end.imu = sum;
+  end.imu_sqrt_information = Matrix15d::Identity();
+  begin.fixLinearisation();
+  end.fixLinearisation();
+  gravity.fixLinearisation();
+  // The present states have moved on.
+  begin.apply(0.01 * Vector15d::Ones());
+  end.apply(-0.01 * Vector15d::Ones());
+  gravity.apply({0.01, 0.02});
+  Matrix15d by_begin;
+  Matrix15d by_end;
+  Matrix15x2d by_gravity;
+  (void)imuResidual(begin, end, gravity, &by_begin, &by_end, &by_gravity);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vector3d n = Vector3d::Unit(axis);
+    const auto turned = [&](const NavState& lin) {
+      Vector15d d = Vector15d::Zero();
+      d.segment<3>(0) = n.cross(lin.p_odom);
+      d.segment<3>(3) = lin.R_odom_imu.inverse() * n;
+      d.segment<3>(6) = n.cross(lin.v_odom);
+      return d;
+    };
+    // The step on the sphere that turns gravity about n.
+    const Eigen::Vector2d pull = gravity.basis().transpose() * n.cross(gravity.lin_vector) /
+                                 gravity.lin_vector.squaredNorm();
+    const Vector15d effect =
+        by_begin * turned(begin.lin_state) + by_end * turned(end.lin_state) + by_gravity * pull;
+    EXPECT_LT(effect.norm(), 1e-9) << axis;
+  }
 }
 
 TEST(TangentBasis, IsAcrossTheDirectionEverywhere) {

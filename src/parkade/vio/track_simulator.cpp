@@ -392,12 +392,18 @@ std::vector<PoseEstimate> runDrive(const SimulatedDrive& drive, VioEstimator& es
 DriveScore score(const SimulatedDrive& drive, const std::vector<PoseEstimate>& estimates) {
   DriveScore result;
   double squared = 0.0;
+  SE3 T_world_odom;
   for (const PoseEstimate& estimate : estimates) {
     if (estimate.health == Health::kInitialising) continue;
     const SE3 truth = drive.truthAt(estimate.t_ns);
-    const Eigen::Matrix3d R = estimate.T_odom_vehicle.rotation().matrix();
-    const Vector3d e = estimate.T_odom_vehicle.translation() - truth.translation();
-    const Vector3d turned = (estimate.T_odom_vehicle.rotation() * truth.rotation().inverse()).log();
+    // Odom is fixed to the first pose.
+    if (result.poses == 0) T_world_odom = truth * estimate.T_odom_vehicle.inverse();
+    const SE3 T_world_vehicle = T_world_odom * estimate.T_odom_vehicle;
+    const Eigen::Matrix3d R = T_world_vehicle.rotation().matrix();
+    const Vector3d e = T_world_vehicle.translation() - truth.translation();
+    const Vector3d turned = (T_world_vehicle.rotation() * truth.rotation().inverse()).log();
+    result.end_tilt_error = std::acos(
+        std::clamp((T_world_odom.rotation() * estimate.up_odom).normalized().z(), -1.0, 1.0));
     const Eigen::Matrix3d P = R * estimate.covariance.block<3, 3>(0, 0) * R.transpose();
     const Eigen::Matrix3d Q = R * estimate.covariance.block<3, 3>(3, 3) * R.transpose();
     if (result.poses == 0) {

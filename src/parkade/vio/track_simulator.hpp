@@ -68,12 +68,14 @@ struct DriveScore {
   double end_error = 0.0;           ///< m
   double max_yaw_error = 0.0;       ///< rad
   double end_yaw_error = 0.0;       ///< rad
+  double end_tilt_error = 0.0;      ///< rad, of the vertical
   double mean_nees_position = 0.0;  ///< 3 expected
   double mean_nees_yaw = 0.0;       ///< 1 expected
   double end_nees_position = 0.0;
   double end_nees_yaw = 0.0;
 };
 
+/// Trajectories are joined at the first pose delivered.
 DriveScore score(const SimulatedDrive& drive, const std::vector<PoseEstimate>& estimates);
 
 }  // namespace parkade::testing

@@ -41,6 +41,26 @@ void WindowFrame::fixLinearisation() {
   delta.setZero();
 }
 
+Eigen::Matrix<double, 3, 2> WindowGravity::basis() const {
+  const double magnitude = jacobianVector().norm();
+  return magnitude * tangentBasis(jacobianVector() / magnitude);
+}
+
+void WindowGravity::apply(const Eigen::Vector2d& step) {
+  const Eigen::Vector3d from = jacobianVector();
+  const double magnitude = from.norm();
+  if (linearised) delta += step;
+  const Eigen::Vector3d moved = from + basis() * (linearised ? delta : step);
+  vector = magnitude * moved.normalized();
+}
+
+void WindowGravity::fixLinearisation() {
+  if (linearised) return;
+  linearised = true;
+  lin_vector = vector;
+  delta.setZero();
+}
+
 int Window::indexOf(int frame_id) const {
   const auto it = std::lower_bound(frames.begin(), frames.end(), frame_id,
                                    [](const WindowFrame& frame, int id) { return frame.id < id; });

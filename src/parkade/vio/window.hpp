@@ -60,6 +60,26 @@ struct WindowFrame {
   void fixLinearisation();
 };
 
+/// Gravity in the odom frame. The odom frame is fixed to the first pose, not to the vertical: how
+/// it is tilted stays uncertain long after (the accelerometer's bias looks the same on a straight),
+/// so the direction of gravity is a state of two degrees of freedom. Poses then never have to move
+/// when the vertical is found (docs/math/marginalisation.md).
+struct WindowGravity {
+  Eigen::Vector3d vector = Eigen::Vector3d(0.0, 0.0, -9.81);  ///< m/s^2
+  bool linearised = false;
+  Eigen::Vector3d lin_vector = Eigen::Vector3d(0.0, 0.0, -9.81);
+  Eigen::Vector2d delta = Eigen::Vector2d::Zero();  ///< rad, from lin_vector
+
+  /// The vector used for Jacobians.
+  [[nodiscard]] const Eigen::Vector3d& jacobianVector() const {
+    return linearised ? lin_vector : vector;
+  }
+  /// d vector / d step at jacobianVector().
+  [[nodiscard]] Eigen::Matrix<double, 3, 2> basis() const;
+  void apply(const Eigen::Vector2d& step);
+  void fixLinearisation();
+};
+
 struct WindowObservation {
   int frame_id = 0;
   int camera = 0;
@@ -88,26 +108,28 @@ struct WindowFeature {
   int last_seen_id = 0;                                  ///< newest frame that saw it
 };
 
-/// What is known of states of the window from all that left it: a quadratic in the frames' deltas,
-/// 0.5 d' H d + b' d.
+/// What is known of states of the window from all that left it: a quadratic in the deltas of the
+/// frames and, last, of gravity, 0.5 d' H d + b' d.
 struct WindowPrior {
   std::vector<int> frame_ids;
   Eigen::MatrixXd H;
   Eigen::VectorXd b;
 };
 
-/// Where the first frame is: holds position and heading, and what is known of velocity and biases.
+/// Where the first frame is: holds its pose, and what is known of velocity, biases and gravity.
 struct StartPrior {
   int frame_id = -1;  ///< -1: absent
   NavState state;
   ImuBias bias;
   Vector15d sigma = Vector15d::Zero();  ///< rotation in odom axes; 0 means unknown
+  Eigen::Vector3d gravity = Eigen::Vector3d(0.0, 0.0, -9.81);
+  double gravity_sigma = 0.0;  ///< rad, of its direction; 0 means unknown
 };
 
 struct Window {
   std::vector<VioCamera> cameras;
   SE3 T_imu_vehicle;
-  Eigen::Vector3d gravity = Eigen::Vector3d(0.0, 0.0, -9.81);
+  WindowGravity gravity;
   std::vector<WindowFrame> frames;  ///< in the order of time
   std::map<std::uint64_t, WindowFeature> features;
   WindowPrior prior;

@@ -14,6 +14,7 @@ namespace parkade {
 namespace {
 
 constexpr int kState = 15;
+constexpr int kGravity = 2;
 constexpr double kMaxDamping = 1e6;
 
 // What a step changes, to be able to take it back.
@@ -24,17 +25,20 @@ struct Backup {
     Vector15d delta;
   };
   std::vector<Frame> frames;
+  WindowGravity gravity;
   std::vector<std::pair<Eigen::Vector3d, double>> landmarks;
 
   void save(const Window& window, const std::vector<WindowFeature*>& features) {
     frames.clear();
     landmarks.clear();
+    gravity = window.gravity;
     for (const WindowFrame& f : window.frames) frames.push_back({f.state, f.bias, f.delta});
     for (const WindowFeature* f : features) {
       landmarks.emplace_back(f->direction, f->inverse_distance);
     }
   }
   void restore(Window& window, const std::vector<WindowFeature*>& features) const {
+    window.gravity = gravity;
     for (std::size_t i = 0; i < frames.size(); ++i) {
       window.frames[i].state = frames[i].state;
       window.frames[i].bias = frames[i].bias;
@@ -47,12 +51,16 @@ struct Backup {
   }
 };
 
-// The newest frame's marginal needs only the last block of the Cholesky factor.
-Matrix15d newestCovariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& llt) {
-  const Matrix15d corner = llt.matrixLLT().bottomRightCorner<kState, kState>();
-  const Matrix15d corner_inverse =
-      corner.triangularView<Eigen::Lower>().solve(Matrix15d::Identity());
-  return corner_inverse.transpose() * corner_inverse;
+// The marginal of the newest frame and gravity needs only the end of the Cholesky factor.
+void setCovariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& llt, SolveSummary& summary) {
+  constexpr int kSize = kState + kGravity;
+  using Block = Eigen::Matrix<double, kSize, kSize>;
+  const Block corner = llt.matrixLLT().bottomRightCorner<kSize, kSize>();
+  const Block corner_inverse = corner.triangularView<Eigen::Lower>().solve(Block::Identity());
+  const Block covariance = corner_inverse.transpose() * corner_inverse;
+  summary.newest_covariance = covariance.topLeftCorner<kState, kState>();
+  summary.gravity_covariance = covariance.bottomRightCorner<kGravity, kGravity>();
+  summary.has_covariance = true;
 }
 
 }  // namespace
@@ -90,12 +98,10 @@ SolveSummary solveWindow(Window& window, const std::vector<WindowFeature*>& feat
     for (std::size_t i = 0; i < window.frames.size(); ++i) {
       window.frames[i].apply(step.segment<kState>(kState * static_cast<Eigen::Index>(i)));
     }
+    window.gravity.apply(step.tail<kGravity>());
     const double decrease = -0.5 * gradient_dot_step;
     // Damping would pass for knowledge of where the whole window is.
-    if (damping == 0.0) {
-      summary.newest_covariance = newestCovariance(llt);
-      summary.has_covariance = true;
-    }
+    if (damping == 0.0) setCovariance(llt, summary);
     summary.ok = true;
     if (decrease < options.min_decrease || summary.iterations == options.max_iterations) {
       summary.final_cost = system.cost() - decrease;
@@ -120,7 +126,8 @@ SolveSummary solveAtRest(Window& window, const std::vector<WindowFeature*>& feat
   SolveSummary summary;
   FactorSelection selection = FactorSelection::all(window);
   LinearSystem system(options.huber, options.still);
-  const auto free_rows = kState * static_cast<Eigen::Index>(window.frames.size() - first_free);
+  const auto free_rows =
+      kState * static_cast<Eigen::Index>(window.frames.size() - first_free) + kGravity;
   summary.initial_cost = system.linearise(window, selection);
   for (; summary.iterations < options.max_iterations; ++summary.iterations) {
     system.reduce(0.0);
@@ -133,6 +140,7 @@ SolveSummary solveAtRest(Window& window, const std::vector<WindowFeature*>& feat
       window.frames[i].apply(
           step.segment<kState>(kState * static_cast<Eigen::Index>(i - first_free)));
     }
+    window.gravity.apply(step.tail<kGravity>());
     const double promised = -0.5 * system.gradient().tail(free_rows).dot(step);
     summary.final_cost = system.linearise(window, selection);
     if (promised < options.min_decrease) break;
@@ -143,10 +151,7 @@ SolveSummary solveAtRest(Window& window, const std::vector<WindowFeature*>& feat
   summary.observations = system.numObservations();
   system.reduce(0.0);
   const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> llt(system.reducedH());
-  if (llt.info() == Eigen::Success) {
-    summary.newest_covariance = newestCovariance(llt);
-    summary.has_covariance = true;
-  }
+  if (llt.info() == Eigen::Success) setCovariance(llt, summary);
   return summary;
 }
 

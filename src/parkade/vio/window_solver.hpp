@@ -26,6 +26,7 @@ struct SolveSummary {
   bool has_covariance = false;
   /// Of the newest frame's tangent, from the information of the whole window and its prior.
   Matrix15d newest_covariance = Matrix15d::Zero();
+  Eigen::Matrix2d gravity_covariance = Eigen::Matrix2d::Zero();  ///< of its direction, rad^2
 };
 
 /// Levenberg-Marquardt over the frames and the given landmarks, which are eliminated in each step.
@@ -33,9 +34,9 @@ struct SolveSummary {
 SolveSummary solveWindow(Window& window, const std::vector<WindowFeature*>& features,
                          const SolveOptions& options);
 
-/// The same for a car at rest: only the frames from `first_free` on move, by their readings and the
-/// rest alone; landmarks and the frames before stay as they are. The covariance is still that of
-/// the whole window with the given landmarks.
+/// The same for a car at rest: only the frames from `first_free` on and gravity move, by their
+/// readings and the rest alone; landmarks and the frames before stay as they are. The covariance is
+/// still that of the whole window with the given landmarks.
 SolveSummary solveAtRest(Window& window, const std::vector<WindowFeature*>& features,
                          std::size_t first_free, const SolveOptions& options);
 

@@ -67,8 +67,9 @@ Window makeWindow(int count, double pixel_sigma, std::vector<WindowFeature*>& fe
   }
   window.start.frame_id = 0;
   window.start.state = window.frames.front().state;
-  window.start.sigma << Eigen::Vector3d::Constant(1e-3), 0.1, 0.1, 1e-3, Eigen::Vector3d::Zero(),
-      Eigen::Vector3d::Constant(0.02), Eigen::Vector3d::Constant(0.1);
+  window.start.gravity_sigma = 0.02;
+  window.start.sigma << Eigen::Vector3d::Constant(1e-3), Eigen::Vector3d::Constant(1e-3),
+      Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(0.02), Eigen::Vector3d::Constant(0.1);
   features = manager.select(window);
   return window;
 }
@@ -139,14 +140,15 @@ struct FrameManifold final : ceres::Manifold {
 
 struct ImuCost {
   WindowFrame end;
-  Eigen::Vector3d gravity;
-  bool operator()(const double* a, const double* b, double* residual) const {
+  bool operator()(const double* a, const double* b, const double* g, double* residual) const {
     WindowFrame begin;
     begin.state = FrameManifold::stateOf(a);
     begin.bias = FrameManifold::biasOf(a);
     WindowFrame last = end;
     last.state = FrameManifold::stateOf(b);
     last.bias = FrameManifold::biasOf(b);
+    WindowGravity gravity;
+    gravity.apply({g[0], g[1]});
     Eigen::Map<Vector15d>{residual} = imuResidual(begin, last, gravity);
     return true;
   }
@@ -159,6 +161,16 @@ struct StartCost {
     frame.state = FrameManifold::stateOf(a);
     frame.bias = FrameManifold::biasOf(a);
     Eigen::Map<Vector15d>{residual} = startResidual(frame, prior);
+    return true;
+  }
+};
+
+struct GravityCost {
+  StartPrior prior;
+  bool operator()(const double* g, double* residual) const {
+    WindowGravity gravity;
+    gravity.apply({g[0], g[1]});
+    Eigen::Map<Eigen::Vector2d>{residual} = gravityResidual(gravity, prior);
     return true;
   }
 };
@@ -207,11 +219,15 @@ TEST(WindowSolver, FindsTheMinimumThatCeresFinds) {
   problem.AddResidualBlock(new ceres::NumericDiffCostFunction<StartCost, ceres::CENTRAL, 15, 16>(
                                new StartCost{window.start}),
                            nullptr, x[0].data());
+  Eigen::Vector2d gravity = Eigen::Vector2d::Zero();
+  problem.AddResidualBlock(new ceres::NumericDiffCostFunction<GravityCost, ceres::CENTRAL, 2, 2>(
+                               new GravityCost{window.start}),
+                           nullptr, gravity.data());
   for (std::size_t i = 1; i < x.size(); ++i) {
     problem.AddResidualBlock(
-        new ceres::NumericDiffCostFunction<ImuCost, ceres::CENTRAL, 15, 16, 16>(
-            new ImuCost{window.frames[i], window.gravity}),
-        nullptr, x[i - 1].data(), x[i].data());
+        new ceres::NumericDiffCostFunction<ImuCost, ceres::CENTRAL, 15, 16, 16, 2>(
+            new ImuCost{window.frames[i]}),
+        nullptr, x[i - 1].data(), x[i].data(), gravity.data());
   }
   const SolveOptions options = tightOptions();
   for (std::size_t f = 0; f < features.size(); ++f) {
@@ -243,6 +259,10 @@ TEST(WindowSolver, FindsTheMinimumThatCeresFinds) {
 
   const SolveSummary summary = solveWindow(window, features, options);
   ASSERT_TRUE(summary.ok);
+  WindowGravity found;
+  found.apply(gravity);
+  EXPECT_LT((found.vector - window.gravity.vector).norm(), 1e-3);
+  EXPECT_GT(gravity.norm(), 1e-4) << "the case does not move gravity";
   EXPECT_NEAR(summary.initial_cost, ceres_summary.initial_cost, 1e-3 * summary.initial_cost);
   EXPECT_NEAR(summary.final_cost, ceres_summary.final_cost, 1e-4 * ceres_summary.final_cost);
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -268,12 +288,13 @@ TEST(WindowSolver, GradientAndMatrixAreThoseOfTheCost) {
     for (std::size_t i = 0; i < other.frames.size(); ++i) {
       other.frames[i].apply(step.segment<kState>(kState * static_cast<Eigen::Index>(i)));
     }
+    other.gravity.apply(step.tail<2>());
     LinearSystem at(1e9, still);
     return at.linearise(other, selection);
   };
   const double h = 1e-6;
-  for (Eigen::Index i = 0; i < kState * 3; ++i) {
-    Eigen::VectorXd step = Eigen::VectorXd::Zero(kState * 3);
+  for (Eigen::Index i = 0; i < kState * 3 + 2; ++i) {
+    Eigen::VectorXd step = Eigen::VectorXd::Zero(kState * 3 + 2);
     step(i) = h;
     const double above = costAt(step);
     step(i) = -h;
@@ -298,7 +319,8 @@ TEST(Marginalisation, PriorStandsForWhatLeft) {
   const FrameConditional conditional =
       marginaliseFrame(window, 0, gone, options.huber, options.still);
   EXPECT_EQ(window.frames.front().id, 1);
-  EXPECT_EQ(conditional.frame_ids.size() * 15, static_cast<std::size_t>(conditional.gain.cols()));
+  EXPECT_EQ(conditional.frame_ids.size() * 15 + 2,
+            static_cast<std::size_t>(conditional.gain.cols()));
   const SolveSummary after = solveWindow(window, rest, options);
   const Eigen::VectorXd sigma_before = before.newest_covariance.diagonal().cwiseSqrt();
   const Eigen::VectorXd sigma_after = after.newest_covariance.diagonal().cwiseSqrt();
