@@ -88,6 +88,9 @@ Status runSequence(const RunArguments& arguments) {
   RunDescription description;
   description.source = arguments.source.spec;
   description.cameras = arguments.source.cameras;
+  for (const RigCamera& camera : opened->rig.cameras) {
+    description.camera_names.push_back(camera.name);
+  }
   description.method = arguments.method;
   description.config = dumpOptions(asOptions(options));
   description.threads = arguments.threads;

@@ -61,6 +61,18 @@ double pathLength(const Trajectory& poses) {
   return length;
 }
 
+nlohmann::json calibrationJson(const std::string& name, const CameraCalibrationEstimate& camera) {
+  const Eigen::Matrix4d T = camera.T_vehicle_cam.matrix();
+  nlohmann::json json{{"camera", name}, {"time_offset_s", camera.time_offset}};
+  for (int row = 0; row < 4; ++row) {
+    json["T_vehicle_cam"].push_back({T(row, 0), T(row, 1), T(row, 2), T(row, 3)});
+  }
+  json["position_sigma_m"] = {camera.sigma(0), camera.sigma(1), camera.sigma(2)};
+  json["rotation_sigma_rad"] = {camera.sigma(3), camera.sigma(4), camera.sigma(5)};
+  json["time_offset_sigma_s"] = camera.sigma(6);
+  return json;
+}
+
 nlohmann::json metricsJson(const RunDescription& description, const MappingRun& run,
                            const HealthLog& health) {
   const RunSummary& summary = run.summary();
@@ -77,6 +89,11 @@ nlohmann::json metricsJson(const RunDescription& description, const MappingRun& 
   for (const Health h :
        {Health::kInitialising, Health::kTracking, Health::kDegraded, Health::kLost}) {
     json["health"][toString(h)] = health.frames(h);
+  }
+  const std::vector<CameraCalibrationEstimate> calibration = run.calibration();
+  for (std::size_t c = 0; c < calibration.size(); ++c) {
+    json["calibration"].push_back(calibrationJson(
+        c < description.camera_names.size() ? description.camera_names[c] : "", calibration[c]));
   }
   const std::optional<double> start_up = health.startUpSeconds();
   json["start_up_s"] = start_up ? nlohmann::json(*start_up) : nlohmann::json();

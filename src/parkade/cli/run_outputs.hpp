@@ -49,6 +49,7 @@ class DebugImages : public PipelineObserver {
 struct RunDescription {
   std::string source;
   std::string cameras;
+  std::vector<std::string> camera_names;  ///< in the order of the run's rig
   std::string method;
   std::string config;  ///< effective configuration, YAML
   int threads = 1;

@@ -271,6 +271,9 @@ const Trajectory& MappingRun::trajectory() const {
   return impl_->trajectory;
 }
 
+std::vector<CameraCalibrationEstimate> MappingRun::calibration() const {
+  return impl_->estimator().calibration();
+}
 Trajectory MappingRun::finalTrajectory() const {
   return impl_->estimator().finalTrajectory();
 }

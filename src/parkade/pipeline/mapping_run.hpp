@@ -93,6 +93,8 @@ class MappingRun {
   /// The same instants, estimated with all that came after.
   [[nodiscard]] Trajectory finalTrajectory() const;
   [[nodiscard]] std::vector<Landmark> landmarks() const;
+  /// The cameras' calibration as refined while driving; empty where it is not refined.
+  [[nodiscard]] std::vector<CameraCalibrationEstimate> calibration() const;
 
  private:
   class Impl;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <unordered_map>
 
 #include "parkade/core/log.hpp"
@@ -18,6 +19,7 @@ constexpr double kSaneBiasAccel = 5.0;     // m/s^2
 constexpr int kMinTrackedLandmarks = 10;   // fewer: degraded
 constexpr int kMinDisparityFeatures = 10;  // fewer say nothing about rest
 constexpr double kKeepReadings = 2.0;      // s
+constexpr double kHeldCalibration = 1e-6;  // m, rad, s
 
 Eigen::Vector3d originVelocity(const WindowFrame& frame, const SE3& T_imu_vehicle) {
   const Eigen::Vector3d lever = T_imu_vehicle.translation();
@@ -40,6 +42,22 @@ VioEstimator::Impl::Impl(const Rig& rig, const VioOptions& options)
   window_.gravity.vector = Eigen::Vector3d(0.0, 0.0, -options.gravity);
   for (const RigCamera& camera : rig.cameras) {
     window_.cameras.push_back({camera.camera, T_imu_vehicle * camera.T_vehicle_cam});
+  }
+  const VioCalibrationOptions& calibration = options.calibration;
+  if (calibration.refine_extrinsics || calibration.refine_time_offset) {
+    // What is not refined is held by a prior that nothing outweighs.
+    const double rotation = calibration.rotation_sigma_deg * std::numbers::pi / 180.0;
+    for (const VioCamera& camera : window_.cameras) {
+      CameraRefinement refinement;
+      refinement.prior_T_imu_cam = camera.T_imu_cam;
+      refinement.sigma.setConstant(kHeldCalibration);
+      if (calibration.refine_extrinsics) {
+        refinement.sigma.head<3>().setConstant(calibration.position_sigma);
+        refinement.sigma.segment<3>(3).setConstant(rotation);
+      }
+      if (calibration.refine_time_offset) refinement.sigma(6) = calibration.time_sigma;
+      window_.refinements.push_back(refinement);
+    }
   }
   if (rig.vehicle) wheel_track_ = rig.vehicle->track;
 }
@@ -154,7 +172,7 @@ void VioEstimator::Impl::optimise(int max_iterations) {
            : solveWindow(window_, selected, solveOptions(max_iterations));
   if (summary.has_covariance) {
     newest_covariance_ = summary.newest_covariance;
-    gravity_covariance_ = summary.gravity_covariance;
+    global_covariance_ = summary.global_covariance;
   }
   int keyframes = 0;
   for (const WindowFrame& frame : window_.frames) keyframes += frame.keyframe ? 1 : 0;
@@ -373,6 +391,23 @@ Trajectory VioEstimator::Impl::finalTrajectory() const {
   return history_.trajectory(window_);
 }
 
+std::vector<CameraCalibrationEstimate> VioEstimator::Impl::calibration() const {
+  std::vector<CameraCalibrationEstimate> result;
+  for (std::size_t c = 0; c < window_.refinements.size(); ++c) {
+    CameraCalibrationEstimate estimate;
+    estimate.T_vehicle_cam = T_vehicle_imu_ * window_.cameras[c].T_imu_cam;
+    estimate.time_offset = window_.cameras[c].time_offset;
+    estimate.sigma = window_.refinements[c].sigma;
+    if (initialised_ && global_covariance_.rows() == window_.globalSize()) {
+      estimate.sigma = global_covariance_.diagonal()
+                           .segment<7>(2 + 7 * static_cast<Eigen::Index>(c))
+                           .cwiseSqrt();
+    }
+    result.push_back(estimate);
+  }
+  return result;
+}
+
 VioEstimator::VioEstimator(const Rig& rig, const VioOptions& options)
     : impl_(std::make_unique<Impl>(rig, options)) {}
 VioEstimator::~VioEstimator() = default;
@@ -397,6 +432,9 @@ MotionPredictor VioEstimator::predictor() const {
 }
 std::vector<Landmark> VioEstimator::landmarks() const {
   return impl_->landmarks();
+}
+std::vector<CameraCalibrationEstimate> VioEstimator::calibration() const {
+  return impl_->calibration();
 }
 Trajectory VioEstimator::finalTrajectory() const {
   return impl_->finalTrajectory();

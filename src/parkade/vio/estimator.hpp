@@ -29,6 +29,14 @@ struct VioStatistics {
   bool standstill = false;
 };
 
+/// Where a camera sits on the car and how its clock is off, as refined online.
+struct CameraCalibrationEstimate {
+  SE3 T_vehicle_cam;
+  double time_offset = 0.0;  ///< s; added to a stamp gives the time on the IMU's clock
+  /// Standard deviations: position (m, imu axes), rotation (rad, camera axes), time offset (s).
+  Eigen::Matrix<double, 7, 1> sigma = Eigen::Matrix<double, 7, 1>::Zero();
+};
+
 /// Visual-inertial odometry over any number of cameras: a sliding window of keyframes and recent
 /// frames, optimised at every frame set; what leaves the window stays as a prior. Eats tracks,
 /// never images. See docs/math/{preintegration,residuals,marginalisation,start_up}.md.
@@ -63,6 +71,9 @@ class VioEstimator {
 
   /// Landmarks of the last solve.
   [[nodiscard]] std::vector<Landmark> landmarks() const;
+
+  /// One per camera where vio.calibration refines them, else empty. Before the start: as given.
+  [[nodiscard]] std::vector<CameraCalibrationEstimate> calibration() const;
 
   /// Every frame set since the start, re-estimated with all that came after it: frames of the
   /// window as last solved, older ones corrected through the keyframes that left it; z points up

@@ -27,6 +27,7 @@ class VioEstimator::Impl {
   MotionPredictor predictor() const;
   std::vector<Landmark> landmarks() const;
   Trajectory finalTrajectory() const;
+  std::vector<CameraCalibrationEstimate> calibration() const;
 
   VioStatistics statistics;
   TimeNs last_t_ns = 0;
@@ -104,8 +105,8 @@ class VioEstimator::Impl {
   std::deque<RecentTracks> recent_tracks_;
 
   PoseEstimate last_;
-  Matrix15d newest_covariance_ = Matrix15d::Zero();               ///< window's tangent
-  Eigen::Matrix2d gravity_covariance_ = Eigen::Matrix2d::Zero();  ///< rad^2
+  Matrix15d newest_covariance_ = Matrix15d::Zero();  ///< window's tangent
+  Eigen::MatrixXd global_covariance_ = Eigen::MatrixXd::Zero(2, 2);
   int solved_landmarks_ = 0;
   TimeNs last_vision_ns_ = 0;
   Health health_ = Health::kInitialising;

@@ -132,7 +132,7 @@ bool VioEstimator::Impl::startInMotion() {
   if (best.fits() && (best.sharp() || late)) {
     window_ = std::move(best.window);
     newest_covariance_ = best.summary.newest_covariance;
-    gravity_covariance_ = best.summary.gravity_covariance;
+    global_covariance_ = best.summary.global_covariance;
     statistics.landmarks = best.landmarks;
     statistics.observations = best.summary.observations;
     logInfo("started in motion: {} frames, {} landmarks, speed {:.2f} +- {:.2f} m/s, cost {:.2f}",
@@ -237,6 +237,13 @@ void VioEstimator::Impl::enterWindow(const std::vector<NavState>& states, std::s
   window_.start.frame_id = window_.frames.front().id;
   window_.start.state = window_.frames.front().state;
   window_.start.bias = bias;
+  for (std::size_t c = 0; c < window_.refinements.size(); ++c) {
+    CameraRefinement& refinement = window_.refinements[c];
+    window_.cameras[c].T_imu_cam = refinement.prior_T_imu_cam;
+    window_.cameras[c].time_offset = refinement.prior_time_offset;
+    refinement.linearised = false;
+    refinement.delta.setZero();
+  }
   window_.gravity = WindowGravity{};
   window_.gravity.vector = options_.gravity * prior.gravity.normalized();
 }
@@ -280,12 +287,17 @@ void VioEstimator::Impl::restart(const std::string& reason) {
       last_run_covariance_ =
           newest_covariance_.allFinite() ? newest_covariance_ : last_run_covariance_;
       last_run_gravity_ = window_.gravity.vector;
-      last_run_gravity_sigma_ = std::sqrt(gravity_covariance_.trace()) + kGaugeRotation;
+      last_run_gravity_sigma_ =
+          std::sqrt(global_covariance_.topLeftCorner<2, 2>().trace()) + kGaugeRotation;
       has_last_run_ = true;
     }
     window_.frames.pop_back();
   }
   history_.freeze(window_);
+  for (std::size_t c = 0; c < window_.refinements.size(); ++c) {
+    window_.refinements[c].prior_T_imu_cam = window_.cameras[c].T_imu_cam;
+    window_.refinements[c].prior_time_offset = window_.cameras[c].time_offset;
+  }
   window_.frames.clear();
   window_.features.clear();
   window_.prior = {};

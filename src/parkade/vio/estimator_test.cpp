@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdlib>
 
+#include "parkade/core/random.hpp"
 #include "parkade/vio/track_simulator.hpp"
 
 namespace parkade {
@@ -24,16 +25,81 @@ TEST(VioEstimator, WithoutNoiseTheTrajectoryIsReproduced) {
   options.pixel_sigma = 0.0;
   options.imu_noise = false;
   const SimulatedDrive drive = simulateDrive(testing::surroundRig(), options);
-  VioEstimator estimator(drive.rig, VioOptions{});
-  const auto start = std::chrono::steady_clock::now();
-  const auto estimates = runDrive(drive, estimator);
-  const double s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const DriveScore result = score(drive, estimates);
-  fmt::print("frames {} poses {} first {:.2f} rmse {:.6f} max {:.6f} yaw {:.6f} ms/frame {:.1f}\n",
-             drive.frames.size(), result.poses, result.first_pose, result.rmse, result.max_error,
-             result.max_yaw_error, 1e3 * s / static_cast<double>(drive.frames.size()));
-  EXPECT_LT(result.max_error, 1e-3);
-  EXPECT_GE(result.poses, static_cast<int>(drive.frames.size()) - 3);
+  for (const bool standstill : {false, true}) {
+    VioOptions vio;
+    vio.standstill.enable = standstill;
+    VioEstimator estimator(drive.rig, vio);
+    const DriveScore result = score(drive, runDrive(drive, estimator));
+    // Rest ends for the estimator once the car has moved by a fraction of a millimetre.
+    EXPECT_LT(result.max_error, standstill ? 6e-4 : 1e-4) << standstill;
+    EXPECT_GE(result.poses, static_cast<int>(drive.frames.size()) - (standstill ? 3 : 10));
+  }
+}
+
+TEST(VioEstimator, IsConsistentOverManyDrives) {
+  // 200 m with BMI088-like noise and 0.5 px; each mean NEES inside its 95 % chi-square band.
+  constexpr int kSeeds = 6;
+  constexpr double kLowPosition = 8.231 / kSeeds;    // chi-square of 18 at 0.025
+  constexpr double kHighPosition = 31.526 / kSeeds;  // at 0.975
+  constexpr double kLowYaw = 1.237 / kSeeds;         // of 6
+  constexpr double kHighYaw = 14.449 / kSeeds;
+  double position = 0.0;
+  double yaw = 0.0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    TrackSimulatorOptions options;
+    options.seed = static_cast<std::uint64_t>(seed);
+    const SimulatedDrive drive = simulateDrive(testing::surroundRig(), options);
+    VioEstimator estimator(drive.rig, VioOptions{});
+    const DriveScore result = score(drive, runDrive(drive, estimator));
+    EXPECT_LT(result.end_error, 0.0015 * drive.distance) << seed;
+    EXPECT_LT(result.end_tilt_error, 2e-3) << seed;
+    position += result.mean_nees_position / kSeeds;
+    yaw += result.mean_nees_yaw / kSeeds;
+  }
+  EXPECT_GT(position, kLowPosition);
+  EXPECT_LT(position, kHighPosition);
+  EXPECT_GT(yaw, kLowYaw);
+  EXPECT_LT(yaw, kHighYaw);
+}
+
+TEST(VioEstimator, RefinesTheCalibrationWhileDriving) {
+  TrackSimulatorOptions options;
+  options.length = 60.0;
+  options.stops = {20.0, 40.0};  // at even speed a delay looks like a shifted camera
+  options.camera_delay = 0.004;
+  const SimulatedDrive drive = simulateDrive(testing::surroundRig(), options);
+  // The estimator believes a rig that is wrong by 0.2 deg and 5 mm.
+  Rig wrong = drive.rig;
+  Random random(5);
+  const auto draw = [&] {
+    return Eigen::Vector3d(random.normal(), random.normal(), random.normal());
+  };
+  for (RigCamera& camera : wrong.cameras) {
+    camera.T_vehicle_cam = camera.T_vehicle_cam * SE3(SO3::exp(3.5e-3 * draw()), 5e-3 * draw());
+  }
+  VioOptions vio;
+  VioEstimator believing(wrong, vio);
+  const DriveScore off = score(drive, runDrive(drive, believing));
+  EXPECT_TRUE(believing.calibration().empty());
+  vio.calibration.refine_extrinsics = true;
+  vio.calibration.refine_time_offset = true;
+  VioEstimator refining(wrong, vio);
+  const DriveScore on = score(drive, runDrive(drive, refining));
+  EXPECT_LT(on.rmse, 0.5 * off.rmse);
+  const std::vector<CameraCalibrationEstimate> found = refining.calibration();
+  ASSERT_EQ(found.size(), wrong.cameras.size());
+  double before = 0.0;
+  double after = 0.0;
+  for (std::size_t c = 0; c < found.size(); ++c) {
+    const SO3 truth = drive.rig.cameras[c].T_vehicle_cam.rotation();
+    before += angleBetween(truth, wrong.cameras[c].T_vehicle_cam.rotation());
+    after += angleBetween(truth, found[c].T_vehicle_cam.rotation());
+    EXPECT_NEAR(found[c].time_offset, options.camera_delay, 3.5 * found[c].sigma(6)) << c;
+    EXPECT_LT(found[c].sigma(6), 0.5 * vio.calibration.time_sigma) << c;
+  }
+  EXPECT_LT(after, 0.3 * before);
+  fmt::print("rmse {:.4f} -> {:.4f} m, rotations off by {:.5f} -> {:.5f} rad in all\n", off.rmse,
+             on.rmse, before, after);
 }
 
 TEST(VioEstimator, DISABLED_Explore) {

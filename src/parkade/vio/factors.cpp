@@ -112,6 +112,22 @@ Vector15d startResidual(const WindowFrame& frame, const StartPrior& prior,
   return r;
 }
 
+Vector7d calibrationResidual(const VioCamera& camera, const CameraRefinement& refinement,
+                             Eigen::Matrix<double, 7, 7>* d_res_d_camera) {
+  const Vector3d turned =
+      (refinement.prior_T_imu_cam.rotation().inverse() * camera.T_imu_cam.rotation()).log();
+  Vector7d r;
+  r << camera.T_imu_cam.translation() - refinement.prior_T_imu_cam.translation(), turned,
+      camera.time_offset - refinement.prior_time_offset;
+  const Vector7d weight = refinement.sigma.cwiseInverse();
+  if (d_res_d_camera != nullptr) {
+    d_res_d_camera->setIdentity();
+    d_res_d_camera->block<3, 3>(3, 3) = SO3::rightJacobianInverse(turned);
+    *d_res_d_camera = weight.asDiagonal() * *d_res_d_camera;
+  }
+  return weight.cwiseProduct(r);
+}
+
 Eigen::Vector2d gravityResidual(const WindowGravity& gravity, const StartPrior& prior,
                                 Eigen::Matrix2d* d_res_d_gravity) {
   const double weight = prior.gravity_sigma > 0.0 ? 1.0 / prior.gravity_sigma : 0.0;

@@ -102,7 +102,7 @@ GateResult FeatureManager::gateNewest(Window& window, const Eigen::Matrix<double
       if (reproject(window.cameras[static_cast<std::size_t>(feature.anchor_camera)],
                     window.cameras[camera], anchor, target, anchor, target, feature.direction,
                     feature.inverse_distance, pixel, &j)) {
-        const Eigen::Vector2d error = pixel - o.pixel;
+        const Eigen::Vector2d error = pixel - observedPixel(window, o);
         const double noise = o.sigma_px * o.sigma_px + kLandmarkSigmaPx * kLandmarkSigmaPx;
         const Eigen::Matrix2d S = j.d_px_d_target * spread * j.d_px_d_target.transpose() +
                                   noise * Eigen::Matrix2d::Identity();

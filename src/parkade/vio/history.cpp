@@ -50,13 +50,14 @@ void VioHistory::freeze(const Window& window) {
 }
 
 std::map<int, VioHistory::Plain> VioHistory::smoothed(const Window& window) const {
+  const Eigen::VectorXd globals = window.globalDelta();
   std::map<int, Vector15d> deltas;
   for (const WindowFrame& frame : window.frames) {
     if (frame.linearised) deltas.emplace(frame.id, frame.delta);
   }
   std::map<int, Plain> poses;
   for (auto it = conditionals_.rbegin(); it != conditionals_.rend(); ++it) {
-    Vector15d delta = -it->offset - it->gain.rightCols<2>() * window.gravity.delta;
+    Vector15d delta = -it->offset - it->gain.rightCols(globals.size()) * globals;
     for (std::size_t k = 0; k < it->frame_ids.size(); ++k) {
       const auto known = deltas.find(it->frame_ids[k]);
       if (known == deltas.end()) continue;

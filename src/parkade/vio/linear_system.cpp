@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "parkade/geometry/robust.hpp"
@@ -12,7 +13,6 @@ namespace parkade {
 namespace {
 
 constexpr int kState = 15;
-constexpr int kGravity = 2;
 // Noise may push a far point beyond infinity. Stopping it at zero would pull all far points, and
 // with them the scale, to one side; the projection is smooth there.
 constexpr double kMinInverseDistance = -0.1;
@@ -42,12 +42,15 @@ FactorSelection FactorSelection::none(const Window& window) {
 
 double LinearSystem::linearise(const Window& window, const FactorSelection& selection) {
   const int count = static_cast<int>(window.frames.size());
-  H_.setZero(kState * count + kGravity, kState * count + kGravity);
-  b_.setZero(kState * count + kGravity);
+  globals_ = kState * count;
+  const Eigen::Index size = globals_ + window.globalSize();
+  H_.setZero(size, size);
+  b_.setZero(size);
   cost_ = 0.0;
   num_observations_ = 0;
   landmarks_.clear();
   couplings_.clear();
+  camera_couplings_.clear();
   poses_.resize(window.frames.size());
   poses_lin_.resize(window.frames.size());
   slot_.assign(window.frames.size(), -1);
@@ -66,8 +69,9 @@ void LinearSystem::addPrior(const Window& window) {
   const WindowPrior& prior = window.prior;
   const int count = static_cast<int>(prior.frame_ids.size());
   if (count == 0) return;
-  Eigen::VectorXd delta(kState * count + kGravity);
-  delta.tail<kGravity>() = window.gravity.delta;
+  const Eigen::Index globals = window.globalSize();
+  Eigen::VectorXd delta(kState * count + globals);
+  delta.tail(globals) = window.globalDelta();
   std::vector<int> index(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     index[static_cast<std::size_t>(i)] =
@@ -87,11 +91,11 @@ void LinearSystem::addPrior(const Window& window) {
       H_.block<kState, kState>(row, column) +=
           prior.H.block<kState, kState>(kState * i, kState * j);
     }
-    H_.block<kGravity, kState>(H_.rows() - kGravity, row) +=
-        prior.H.block<kGravity, kState>(kState * count, kState * i);
+    H_.block(globals_, row, globals, kState) +=
+        prior.H.block(kState * count, kState * i, globals, kState);
   }
-  b_.tail<kGravity>() += gradient.tail<kGravity>();
-  H_.bottomRightCorner<kGravity, kGravity>() += prior.H.bottomRightCorner<kGravity, kGravity>();
+  b_.tail(globals) += gradient.tail(globals);
+  H_.bottomRightCorner(globals, globals) += prior.H.bottomRightCorner(globals, globals);
 }
 
 void LinearSystem::addPair(int i, int j, const Matrix15d& hii, const Matrix15d& hji,
@@ -115,11 +119,31 @@ void LinearSystem::addImu(const Window& window, const FactorSelection& selection
     b_.segment<kState>(kState * i).noalias() += by_i.transpose() * r;
     b_.segment<kState>(kState * j).noalias() += by_j.transpose() * r;
     addPair(i, j, by_i.transpose() * by_i, by_j.transpose() * by_i, by_j.transpose() * by_j);
-    const Eigen::Index g = H_.rows() - kGravity;
-    b_.tail<kGravity>().noalias() += by_gravity.transpose() * r;
-    H_.block<kGravity, kState>(g, kState * i).noalias() += by_gravity.transpose() * by_i;
-    H_.block<kGravity, kState>(g, kState * j).noalias() += by_gravity.transpose() * by_j;
-    H_.bottomRightCorner<kGravity, kGravity>().noalias() += by_gravity.transpose() * by_gravity;
+    b_.segment<2>(globals_).noalias() += by_gravity.transpose() * r;
+    H_.block<2, kState>(globals_, kState * i).noalias() += by_gravity.transpose() * by_i;
+    H_.block<2, kState>(globals_, kState * j).noalias() += by_gravity.transpose() * by_j;
+    H_.block<2, 2>(globals_, globals_).noalias() += by_gravity.transpose() * by_gravity;
+  }
+}
+
+void LinearSystem::addStart(const Window& window, const WindowFrame& frame, int index) {
+  Matrix15d by_frame;
+  const Vector15d r = startResidual(frame, window.start, &by_frame);
+  cost_ += 0.5 * r.squaredNorm();
+  b_.segment<kState>(kState * index).noalias() += by_frame.transpose() * r;
+  H_.block<kState, kState>(kState * index, kState * index) += by_frame.transpose() * by_frame;
+  Eigen::Matrix2d by_gravity;
+  const Eigen::Vector2d tilt = gravityResidual(window.gravity, window.start, &by_gravity);
+  cost_ += 0.5 * tilt.squaredNorm();
+  b_.segment<2>(globals_) += by_gravity.transpose() * tilt;
+  H_.block<2, 2>(globals_, globals_) += by_gravity.transpose() * by_gravity;
+  for (std::size_t c = 0; c < window.refinements.size(); ++c) {
+    Eigen::Matrix<double, 7, 7> by_camera;
+    const Vector7d off = calibrationResidual(window.cameras[c], window.refinements[c], &by_camera);
+    const Eigen::Index row = cameraRow(static_cast<int>(c));
+    cost_ += 0.5 * off.squaredNorm();
+    b_.segment<7>(row) += by_camera.transpose() * off;
+    H_.block<7, 7>(row, row) += by_camera.transpose() * by_camera;
   }
 }
 
@@ -128,16 +152,7 @@ void LinearSystem::addMotion(const Window& window, const FactorSelection& select
     const WindowFrame& frame = window.frames[k];
     const int j = static_cast<int>(k);
     if (selection.unary[k] != 0 && frame.id == window.start.frame_id) {
-      Matrix15d by_frame;
-      const Vector15d r = startResidual(frame, window.start, &by_frame);
-      cost_ += 0.5 * r.squaredNorm();
-      b_.segment<kState>(kState * j).noalias() += by_frame.transpose() * r;
-      H_.block<kState, kState>(kState * j, kState * j) += by_frame.transpose() * by_frame;
-      Eigen::Matrix2d by_gravity;
-      const Eigen::Vector2d tilt = gravityResidual(window.gravity, window.start, &by_gravity);
-      cost_ += 0.5 * tilt.squaredNorm();
-      b_.tail<kGravity>() += by_gravity.transpose() * tilt;
-      H_.bottomRightCorner<kGravity, kGravity>() += by_gravity.transpose() * by_gravity;
+      addStart(window, frame, j);
     }
     if (selection.unary[k] != 0 && frame.body_velocity_sigma.maxCoeff() > 0.0) {
       Matrix3x15d by_frame;
@@ -173,6 +188,9 @@ void LinearSystem::addFeature(const Window& window, WindowFeature& feature) {
   LandmarkBlock landmark;
   landmark.feature = &feature;
   landmark.first = static_cast<int>(couplings_.size());
+  landmark.first_camera = static_cast<int>(camera_couplings_.size());
+  const bool refine = !window.refinements.empty();
+  CameraJacobians cameras;
   const double off_prior = feature.inverse_distance - kPriorInverseDistance;
   landmark.V(2, 2) = kPriorInverseDistanceInformation;
   landmark.b(2) = kPriorInverseDistanceInformation * off_prior;
@@ -189,7 +207,7 @@ void LinearSystem::addFeature(const Window& window, WindowFeature& feature) {
 
   int last_frame_id = -1;
   int t = -1;
-  for (const WindowObservation& observation : feature.observations) {
+  for (WindowObservation& observation : feature.observations) {
     if (observation.frame_id != last_frame_id) {
       last_frame_id = observation.frame_id;
       t = window.indexOf(last_frame_id);
@@ -200,13 +218,20 @@ void LinearSystem::addFeature(const Window& window, WindowFeature& feature) {
     ReprojectionJacobians j;
     if (!reproject(anchor_camera, window.cameras[static_cast<std::size_t>(observation.camera)],
                    poses_[anchor], poses_[target], poses_lin_[anchor], poses_lin_[target],
-                   feature.direction, feature.inverse_distance, pixel, &j)) {
+                   feature.direction, feature.inverse_distance, pixel, &j,
+                   refine ? &cameras : nullptr)) {
       cost_ += kInvisibleCost;
       continue;
     }
     ++num_observations_;
+    if (refine) {
+      const WindowFrame& frame = window.frames[target];
+      Eigen::Matrix<double, 6, 1> motion;
+      motion << frame.state.v_odom, frame.gyro - frame.bias.gyro;
+      observation.pixel_rate = j.d_px_d_target * motion;
+    }
     const double weight = 1.0 / observation.sigma_px;
-    Eigen::Vector2d r = weight * (pixel - observation.pixel);
+    Eigen::Vector2d r = weight * (pixel - observedPixel(window, observation));
     const RobustValue term = huber(r.squaredNorm(), huber_);
     cost_ += 0.5 * term.rho;
     const double root = std::sqrt(term.weight);
@@ -214,9 +239,12 @@ void LinearSystem::addFeature(const Window& window, WindowFeature& feature) {
     j.d_px_d_landmark *= weight * root;
     landmark.V.noalias() += j.d_px_d_landmark.transpose() * j.d_px_d_landmark;
     landmark.b.noalias() += j.d_px_d_landmark.transpose() * r;
-    if (t == a) continue;  // within one frame set only the landmark moves
     j.d_px_d_anchor *= weight * root;
     j.d_px_d_target *= weight * root;
+    if (refine) {
+      addCameras(cameras, observation, weight * root, feature.anchor_camera, a, t, r, j, landmark);
+    }
+    if (t == a) continue;  // within one frame set the poses have no part
     coupling(a).noalias() += j.d_px_d_anchor.transpose() * j.d_px_d_landmark;
     coupling(t).noalias() += j.d_px_d_target.transpose() * j.d_px_d_landmark;
     b_.segment<6>(kState * a).noalias() += j.d_px_d_anchor.transpose() * r;
@@ -234,10 +262,74 @@ void LinearSystem::addFeature(const Window& window, WindowFeature& feature) {
     }
   }
   landmark.count = static_cast<int>(couplings_.size()) - landmark.first;
+  landmark.camera_count = static_cast<int>(camera_couplings_.size()) - landmark.first_camera;
   for (int k = landmark.first; k < landmark.first + landmark.count; ++k) {
     slot_[static_cast<std::size_t>(couplings_[static_cast<std::size_t>(k)].frame)] = -1;
   }
   landmarks_.push_back(landmark);
+}
+
+// The terms of the two cameras' calibration in one observation; j's Jacobians are whitened.
+void LinearSystem::addCameras(const CameraJacobians& cameras, const WindowObservation& observation,
+                              double weight, int anchor_camera, int anchor, int target,
+                              const Eigen::Vector2d& r, const ReprojectionJacobians& j,
+                              LandmarkBlock& landmark) {
+  struct Part {
+    int camera;
+    Matrix27d J;
+  };
+  std::array<Part, 2> parts{Part{anchor_camera, Matrix27d::Zero()},
+                            Part{observation.camera, Matrix27d::Zero()}};
+  parts[0].J.leftCols<6>() = weight * cameras.d_px_d_anchor_camera;
+  parts[1].J.leftCols<6>() = weight * cameras.d_px_d_target_camera;
+  parts[1].J.col(6) = weight * observation.pixel_rate;
+  int count = 2;
+  if (parts[0].camera == parts[1].camera) {
+    parts[0].J += parts[1].J;
+    count = 1;
+  }
+  for (int k = 0; k < count; ++k) {
+    const Part& part = parts[static_cast<std::size_t>(k)];
+    const Eigen::Index row = cameraRow(part.camera);
+    b_.segment<7>(row).noalias() += part.J.transpose() * r;
+    H_.block<7, 7>(row, row).noalias() += part.J.transpose() * part.J;
+    if (target != anchor) {
+      H_.block<7, 6>(row, kState * anchor).noalias() += part.J.transpose() * j.d_px_d_anchor;
+      H_.block<7, 6>(row, kState * target).noalias() += part.J.transpose() * j.d_px_d_target;
+    }
+    const auto begin = camera_couplings_.begin() + landmark.first_camera;
+    auto it = std::find_if(begin, camera_couplings_.end(),
+                           [&](const CameraCoupling& c) { return c.camera == part.camera; });
+    if (it == camera_couplings_.end()) {
+      it = camera_couplings_.insert(camera_couplings_.end(), {part.camera, Matrix73d::Zero()});
+    }
+    it->W.noalias() += part.J.transpose() * j.d_px_d_landmark;
+  }
+  if (count == 2) {
+    const bool ordered = parts[0].camera > parts[1].camera;
+    const Part& low = parts[ordered ? 0 : 1];  // the lower triangle
+    const Part& high = parts[ordered ? 1 : 0];
+    H_.block<7, 7>(cameraRow(low.camera), cameraRow(high.camera)).noalias() +=
+        low.J.transpose() * high.J;
+  }
+}
+
+void LinearSystem::reduceCameras(const LandmarkBlock& landmark, const Eigen::Vector3d& V_b) {
+  const auto begin = camera_couplings_.begin() + landmark.first_camera;
+  const auto end = begin + landmark.camera_count;
+  for (auto row = begin; row != end; ++row) {
+    const Eigen::Index at = cameraRow(row->camera);
+    const Matrix73d Y = row->W * landmark.V_inverse;
+    reduced_b_.segment<7>(at).noalias() -= row->W * V_b;
+    for (int n = landmark.first; n < landmark.first + landmark.count; ++n) {
+      const CouplingBlock& column = couplings_[static_cast<std::size_t>(n)];
+      reduced_H_.block<7, 6>(at, kState * column.frame).noalias() -= Y * column.W.transpose();
+    }
+    for (auto column = begin; column != end; ++column) {
+      if (column->camera > row->camera) continue;
+      reduced_H_.block<7, 7>(at, cameraRow(column->camera)).noalias() -= Y * column->W.transpose();
+    }
+  }
 }
 
 void LinearSystem::reduce(double damping) {
@@ -262,6 +354,7 @@ void LinearSystem::reduce(double damping) {
             Y * column.W.transpose();
       }
     }
+    if (landmark.camera_count > 0) reduceCameras(landmark, V_b);
   }
 }
 
@@ -273,6 +366,10 @@ void LinearSystem::applyToLandmarks(const Eigen::VectorXd& frame_step, double& g
     for (std::size_t k = first; k < last; ++k) {
       right.noalias() +=
           couplings_[k].W.transpose() * frame_step.segment<6>(kState * couplings_[k].frame);
+    }
+    for (int k = landmark.first_camera; k < landmark.first_camera + landmark.camera_count; ++k) {
+      const CameraCoupling& c = camera_couplings_[static_cast<std::size_t>(k)];
+      right.noalias() += c.W.transpose() * frame_step.segment<7>(cameraRow(c.camera));
     }
     const Eigen::Vector3d step = -(landmark.V_inverse * right);
     gradient_dot_step += landmark.b.dot(step);

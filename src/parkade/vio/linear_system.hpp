@@ -26,7 +26,8 @@ struct FactorSelection {
 
 /// The cost of a window, squared about its present state: gradient and Gauss-Newton matrix of the
 /// frames, with the landmarks apart so that they can be eliminated (docs/math/residuals.md, eq. 8).
-/// The robust loss enters as weights. Frame i has rows 15 i to 15 i + 14, gravity the last two.
+/// The robust loss enters as weights. Frame i has rows 15 i to 15 i + 14, the window's
+/// globals the last ones.
 class LinearSystem {
  public:
   LinearSystem(double huber, const StillSigma& still) : huber_(huber), still_(still) {}
@@ -37,12 +38,12 @@ class LinearSystem {
   /// The cost at the present state with the selection last linearised.
   [[nodiscard]] double cost() const { return cost_; }
   [[nodiscard]] int numObservations() const { return num_observations_; }
-  /// Of frames and gravity.
+  /// Of frames and globals.
   [[nodiscard]] const Eigen::VectorXd& gradient() const { return b_; }
 
   /// Eliminates the landmarks, with `damping` times the diagonal added to them.
   void reduce(double damping);
-  /// Valid after reduce(): frames and gravity, lower triangle. The prior counts as a term like
+  /// Valid after reduce(): frames and globals, lower triangle. The prior counts as a term like
   /// others.
   [[nodiscard]] const Eigen::MatrixXd& reducedH() const { return reduced_H_; }
   [[nodiscard]] const Eigen::VectorXd& reducedB() const { return reduced_b_; }
@@ -60,16 +61,32 @@ class LinearSystem {
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
     int first = 0;  ///< of its coupling blocks
     int count = 0;
+    int first_camera = 0;  ///< of its coupling blocks with refined cameras
+    int camera_count = 0;
   };
   struct CouplingBlock {
     int frame = 0;
     Matrix63d W = Matrix63d::Zero();  ///< pose by landmark
   };
 
+  using Matrix73d = Eigen::Matrix<double, 7, 3>;
+  using Matrix27d = Eigen::Matrix<double, 2, 7>;
+  struct CameraCoupling {
+    int camera = 0;
+    Matrix73d W = Matrix73d::Zero();
+  };
+
   void addPrior(const Window& window);
   void addImu(const Window& window, const FactorSelection& selection);
   void addMotion(const Window& window, const FactorSelection& selection);
+  void addStart(const Window& window, const WindowFrame& frame, int index);
   void addFeature(const Window& window, WindowFeature& feature);
+  void addCameras(const CameraJacobians& cameras, const WindowObservation& observation,
+                  double weight, int anchor_camera, int anchor, int target,
+                  const Eigen::Vector2d& r, const ReprojectionJacobians& j,
+                  LandmarkBlock& landmark);
+  void reduceCameras(const LandmarkBlock& landmark, const Eigen::Vector3d& V_b);
+  [[nodiscard]] Eigen::Index cameraRow(int camera) const { return globals_ + 2 + 7 * camera; }
   void addPair(int i, int j, const Matrix15d& hii, const Matrix15d& hji, const Matrix15d& hjj);
 
   double huber_;
@@ -82,6 +99,8 @@ class LinearSystem {
   Eigen::VectorXd reduced_b_;
   std::vector<LandmarkBlock> landmarks_;
   std::vector<CouplingBlock> couplings_;
+  std::vector<CameraCoupling> camera_couplings_;
+  Eigen::Index globals_ = 0;  ///< first row of the globals
   std::vector<PoseMatrices> poses_;
   std::vector<PoseMatrices> poses_lin_;
   std::vector<int> slot_;  ///< per frame: position of its coupling block, -1 none

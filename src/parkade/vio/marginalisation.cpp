@@ -11,7 +11,6 @@ namespace parkade {
 namespace {
 
 constexpr Eigen::Index kState = 15;
-constexpr Eigen::Index kGravity = 2;
 
 // Removes a frame's observations; features keep their point through another anchor, if any.
 void eraseObservations(Window& window, int frame_id) {
@@ -88,10 +87,10 @@ FrameConditional marginaliseFrame(Window& window, int frame_id,
   const std::vector<std::size_t> involved = involvedFrames(window, selection, index);
   for (const std::size_t k : involved) window.frames[k].fixLinearisation();
 
-  window.gravity.fixLinearisation();
+  window.fixGlobals();
 
   // 1. All terms, landmarks eliminated, as a quadratic about the points of linearisation. The frame
-  // that leaves goes first, gravity last.
+  // that leaves goes first, the globals last.
   LinearSystem system(huber, still);
   system.linearise(window, selection);
   system.reduce(0.0);
@@ -99,7 +98,8 @@ FrameConditional marginaliseFrame(Window& window, int frame_id,
   for (const std::size_t k : involved) {
     if (k != index) order.push_back(k);
   }
-  const auto size = kState * static_cast<Eigen::Index>(order.size()) + kGravity;
+  const Eigen::Index globals = window.globalSize();
+  const Eigen::Index size = kState * static_cast<Eigen::Index>(order.size()) + globals;
   std::vector<Eigen::Index> from;
   Eigen::VectorXd delta(size);
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -108,9 +108,9 @@ FrameConditional marginaliseFrame(Window& window, int frame_id,
       from.push_back(kState * static_cast<Eigen::Index>(order[i]) + row);
     }
   }
-  delta.tail<kGravity>() = window.gravity.delta;
-  for (Eigen::Index row = 0; row < kGravity; ++row) {
-    from.push_back(system.reducedH().rows() - kGravity + row);
+  delta.tail(globals) = window.globalDelta();
+  for (Eigen::Index row = 0; row < globals; ++row) {
+    from.push_back(system.reducedH().rows() - globals + row);
   }
   const Eigen::MatrixXd full = system.reducedH().selfadjointView<Eigen::Lower>();
   const Eigen::MatrixXd H = full(from, from);

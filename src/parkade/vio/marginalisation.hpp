@@ -11,7 +11,7 @@
 namespace parkade {
 
 /// What a frame that left the window is, given the frames that stayed:
-/// delta = -(offset + gain * deltas of frame_ids and, last, of gravity).
+/// delta = -(offset + gain * deltas of frame_ids and, last, of the globals).
 struct FrameConditional {
   int frame_id = 0;
   TimeNs t_ns = 0;

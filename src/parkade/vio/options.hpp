@@ -96,11 +96,33 @@ struct VioStartUpOptions {
   }
 };
 
+struct VioCalibrationOptions {
+  bool refine_extrinsics = false;
+  bool refine_time_offset = false;
+  double position_sigma = 0.01;
+  double rotation_sigma_deg = 0.2;
+  double time_sigma = 0.005;
+
+  void visit(OptionVisitor& v) {
+    v.field("refine_extrinsics", refine_extrinsics,
+            "Estimate where each camera sits while driving, from the calibration on.");
+    v.field("refine_time_offset", refine_time_offset,
+            "Estimate each camera's time offset to the IMU while driving.");
+    v.field("position_sigma", position_sigma, "m", "Error of the calibrated positions, 1 sigma.",
+            1e-5, 1.0);
+    v.field("rotation_sigma_deg", rotation_sigma_deg, "deg",
+            "Error of the calibrated rotations about each axis, 1 sigma.", 1e-3, 10.0);
+    v.field("time_sigma", time_sigma, "s", "Error of the calibrated time offsets, 1 sigma.", 1e-5,
+            0.1);
+  }
+};
+
 struct VioOptions {
   VioWindowOptions window;
   VioKeyframeOptions keyframe;
   VioStandstillOptions standstill;
   VioStartUpOptions start_up;
+  VioCalibrationOptions calibration;
   double gravity = 9.81;
   double imu_noise_factor = 1.0;
   double max_imu_gap_s = 0.1;
@@ -118,6 +140,7 @@ struct VioOptions {
     v.group("keyframe", keyframe);
     v.group("standstill", standstill);
     v.group("start_up", start_up);
+    v.group("calibration", calibration);
     v.field("gravity", gravity, "m/s^2", "Magnitude of gravity.", 9.7, 9.9);
     v.field("imu_noise_factor", imu_noise_factor, "ratio",
             "Multiplies the calibration's IMU noise densities: real sensors shake.", 0.1, 100.0);

@@ -12,7 +12,7 @@ bool reproject(const VioCamera& anchor_camera, const VioCamera& target_camera,
                const PoseMatrices& anchor, const PoseMatrices& target,
                const PoseMatrices& anchor_lin, const PoseMatrices& target_lin,
                const Vector3d& direction, double inverse_distance, Eigen::Vector2d& pixel,
-               ReprojectionJacobians* jacobians) {
+               ReprojectionJacobians* jacobians, CameraJacobians* camera_jacobians) {
   const double rho = inverse_distance;
   const Matrix3d R_imu_anchor = anchor_camera.T_imu_cam.rotation().matrix();
   const Matrix3d R_target_imu = target_camera.T_imu_cam.rotation().matrix().transpose();
@@ -41,6 +41,13 @@ bool reproject(const VioCamera& anchor_camera, const VioCamera& target_camera,
       (by_anchor_imu * R_imu_anchor) * tangentBasis(direction);
   jacobians->d_px_d_landmark.col(2).noalias() =
       by_anchor_imu * t_anchor + by_odom * (anchor_lin.p - target_lin.p) - by_imu * t_target;
+  if (camera_jacobians != nullptr) {
+    camera_jacobians->d_px_d_anchor_camera.leftCols<3>() = rho * by_anchor_imu;
+    camera_jacobians->d_px_d_anchor_camera.rightCols<3>().noalias() =
+        -(by_anchor_imu * R_imu_anchor) * hat(direction);
+    camera_jacobians->d_px_d_target_camera.leftCols<3>() = -rho * by_imu;
+    camera_jacobians->d_px_d_target_camera.rightCols<3>().noalias() = d_px_d_z * hat(z);
+  }
   return true;
 }
 

@@ -24,6 +24,12 @@ struct ReprojectionJacobians {
   Eigen::Matrix<double, 2, 3> d_px_d_landmark;
 };
 
+/// Position (imu axes) and rotation (right perturbation) of the two cameras on the car.
+struct CameraJacobians {
+  Eigen::Matrix<double, 2, 6> d_px_d_anchor_camera;
+  Eigen::Matrix<double, 2, 6> d_px_d_target_camera;
+};
+
 /// Where a landmark, given by direction and inverse distance in its anchor camera, appears in a
 /// target camera; docs/math/residuals.md, eq. (3). False where the camera cannot see it.
 ///
@@ -34,6 +40,7 @@ bool reproject(const VioCamera& anchor_camera, const VioCamera& target_camera,
                const PoseMatrices& anchor, const PoseMatrices& target,
                const PoseMatrices& anchor_lin, const PoseMatrices& target_lin,
                const Eigen::Vector3d& direction, double inverse_distance, Eigen::Vector2d& pixel,
-               ReprojectionJacobians* jacobians = nullptr);
+               ReprojectionJacobians* jacobians = nullptr,
+               CameraJacobians* camera_jacobians = nullptr);
 
 }  // namespace parkade

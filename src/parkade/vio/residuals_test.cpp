@@ -79,6 +79,44 @@ TEST_P(ReprojectionJacobian, IsThatOfFiniteDifferences) {
   EXPECT_THAT(analytic, EigenMatrixNear(numericJacobian(pixelAt, Eigen::VectorXd::Zero(15)), 2e-5));
 }
 
+TEST_P(ReprojectionJacobian, ByTheCamerasIsThatOfFiniteDifferences) {
+  Random random(static_cast<std::uint64_t>(GetParam()) + 100);
+  VioCamera anchor_camera;
+  VioCamera target_camera;
+  PinholeEquidistant::Parameters wide;
+  wide.fx = wide.fy = 200.0;
+  wide.k1 = 0.02;
+  anchor_camera.camera = target_camera.camera = Camera(PinholeEquidistant(wide), 640, 400);
+  anchor_camera.T_imu_cam = SE3(SO3::exp(draw(random, 0.2)), draw(random, 0.3));
+  target_camera.T_imu_cam = SE3(SO3::exp(draw(random, 0.2)), draw(random, 0.3));
+  NavState state;
+  const PoseMatrices a(state);
+  state.p_odom = draw(random, 0.3);
+  state.R_odom_imu = SO3::exp(draw(random, 0.1));
+  const PoseMatrices t(state);
+  const Vector3d direction = (Vector3d::UnitZ() + draw(random, 0.15)).normalized();
+  const auto moved_camera = [](VioCamera camera, const Eigen::VectorXd& x) {
+    camera.T_imu_cam = SE3(camera.T_imu_cam.rotation() * SO3::exp(x.tail<3>()),
+                           camera.T_imu_cam.translation() + x.head<3>());
+    return camera;
+  };
+  const auto pixelAt = [&](const Eigen::VectorXd& x) {
+    Eigen::Vector2d pixel;
+    EXPECT_TRUE(reproject(moved_camera(anchor_camera, x.head<6>()),
+                          moved_camera(target_camera, x.tail<6>()), a, t, a, t, direction, 0.2,
+                          pixel));
+    return Eigen::VectorXd(pixel);
+  };
+  Eigen::Vector2d pixel;
+  ReprojectionJacobians j;
+  CameraJacobians cameras;
+  ASSERT_TRUE(
+      reproject(anchor_camera, target_camera, a, t, a, t, direction, 0.2, pixel, &j, &cameras));
+  Eigen::MatrixXd analytic(2, 12);
+  analytic << cameras.d_px_d_anchor_camera, cameras.d_px_d_target_camera;
+  EXPECT_THAT(analytic, EigenMatrixNear(numericJacobian(pixelAt, Eigen::VectorXd::Zero(12)), 2e-5));
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, ReprojectionJacobian, ::testing::Range(0, 6));
 
 TEST(ReprojectionJacobian, FirstEstimatesLeaveACommonMotionWithoutEffect) {

@@ -370,7 +370,8 @@ SimulatedDrive simulateDrive(const Rig& rig, const TrackSimulatorOptions& option
     // Frames lie between readings.
     const TimeNs t = begin + fromSeconds(i / options.frame_rate + 0.0017);
     if (t > end) break;
-    drive.frames.push_back(maker.make(t, drive.truth.at(t).T_world_body));
+    const TimeNs seen = t + fromSeconds(options.camera_delay);
+    drive.frames.push_back(maker.make(t, drive.truth.at(seen).T_world_body));
   }
   return drive;
 }

@@ -35,8 +35,9 @@ struct TrackSimulatorOptions {
   double bias_accel_sigma = 0.1;   ///< m/s^2, turn-on
   int tracks_per_camera = 120;
   double mean_lifetime = 25.0;  ///< frames
-  double match_rate = 0.3;  ///< of a neighbour camera's features that are found again, per frame
-  double max_range = 14.0;  ///< m
+  double match_rate = 0.3;    ///< of a neighbour camera's features that are found again, per frame
+  double max_range = 14.0;    ///< m
+  double camera_delay = 0.0;  ///< s, that stamps of tracks lag behind the instant of the picture
 };
 
 /// Six cameras of 640x400 pixels and 100 deg around a car, neighbours overlap; the IMU is a BMI088.

@@ -63,7 +63,7 @@ bool evaluate(const Window& window, const std::vector<View>& views, const Vector
       return false;
     }
     const double weight = 1.0 / view.observation->sigma_px;
-    const Eigen::Vector2d r = weight * (pixel - view.observation->pixel);
+    const Eigen::Vector2d r = weight * (pixel - observedPixel(window, *view.observation));
     const Eigen::Matrix<double, 2, 3> J = weight * j.d_px_d_landmark;
     const double robust = huber(r.squaredNorm(), 3.0).weight;
     H += robust * J.transpose() * J;

@@ -61,6 +61,51 @@ void WindowGravity::fixLinearisation() {
   delta.setZero();
 }
 
+Eigen::Index Window::globalSize() const {
+  return 2 + 7 * static_cast<Eigen::Index>(refinements.size());
+}
+
+Eigen::VectorXd Window::globalDelta() const {
+  Eigen::VectorXd delta(globalSize());
+  delta.head<2>() = gravity.delta;
+  for (std::size_t c = 0; c < refinements.size(); ++c) {
+    delta.segment<7>(2 + 7 * static_cast<Eigen::Index>(c)) = refinements[c].delta;
+  }
+  return delta;
+}
+
+void Window::applyGlobals(const Eigen::VectorXd& step) {
+  gravity.apply(step.head<2>());
+  for (std::size_t c = 0; c < refinements.size(); ++c) {
+    CameraRefinement& refinement = refinements[c];
+    VioCamera& camera = cameras[c];
+    Vector7d move = step.segment<7>(2 + 7 * static_cast<Eigen::Index>(c));
+    SE3 from = camera.T_imu_cam;
+    double offset = camera.time_offset;
+    if (refinement.linearised) {
+      refinement.delta += move;
+      move = refinement.delta;
+      from = refinement.lin_T_imu_cam;
+      offset = refinement.lin_time_offset;
+    }
+    camera.T_imu_cam =
+        SE3(from.rotation() * SO3::exp(move.segment<3>(3)), from.translation() + move.head<3>());
+    camera.time_offset = offset + move(6);
+  }
+}
+
+void Window::fixGlobals() {
+  gravity.fixLinearisation();
+  for (std::size_t c = 0; c < refinements.size(); ++c) {
+    CameraRefinement& refinement = refinements[c];
+    if (refinement.linearised) continue;
+    refinement.linearised = true;
+    refinement.lin_T_imu_cam = cameras[c].T_imu_cam;
+    refinement.lin_time_offset = cameras[c].time_offset;
+    refinement.delta.setZero();
+  }
+}
+
 int Window::indexOf(int frame_id) const {
   const auto it = std::lower_bound(frames.begin(), frames.end(), frame_id,
                                    [](const WindowFrame& frame, int id) { return frame.id < id; });
@@ -85,6 +130,11 @@ Eigen::Vector3d Window::pointOf(const WindowFeature& feature) const {
   const Eigen::Vector3d p_imu = cameras[static_cast<std::size_t>(feature.anchor_camera)].T_imu_cam *
                                 Eigen::Vector3d(feature.direction / feature.inverse_distance);
   return anchor->state.R_odom_imu * p_imu + anchor->state.p_odom;
+}
+
+Eigen::Vector2d observedPixel(const Window& window, const WindowObservation& observation) {
+  const double late = window.cameras[static_cast<std::size_t>(observation.camera)].time_offset;
+  return observation.pixel - late * observation.pixel_rate;
 }
 
 Eigen::Matrix<double, 3, 2> tangentBasis(const Eigen::Vector3d& direction) {

@@ -14,10 +14,27 @@
 
 namespace parkade {
 
+using Vector7d = Eigen::Matrix<double, 7, 1>;
+
 /// A camera as the estimator needs it.
 struct VioCamera {
   Camera camera;
   SE3 T_imu_cam;
+  double time_offset = 0.0;  ///< s; added to a stamp gives the time on the IMU's clock
+};
+
+/// What is known of a camera's calibration before any image, where it is refined online. Seven
+/// degrees of freedom: position (imu axes, m), rotation (right perturbation of R_imu_cam, rad),
+/// time offset (s).
+struct CameraRefinement {
+  SE3 prior_T_imu_cam;
+  double prior_time_offset = 0.0;
+  Vector7d sigma = Vector7d::Ones();
+
+  bool linearised = false;
+  SE3 lin_T_imu_cam;
+  double lin_time_offset = 0.0;
+  Vector7d delta = Vector7d::Zero();
 };
 
 /// One frame set in the window. Its tangent is that of Preintegration: position (odom axes),
@@ -85,6 +102,9 @@ struct WindowObservation {
   int camera = 0;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
   Eigen::Vector3d ray = Eigen::Vector3d::Zero();  ///< unit, camera frame
+  /// How fast the landmark moves in the image, px/s, where the time offset is refined. From the
+  /// frame's velocity, for differences of pixels would correlate with their noise.
+  Eigen::Vector2d pixel_rate = Eigen::Vector2d::Zero();
   double sigma_px = 1.0;
 };
 
@@ -109,7 +129,7 @@ struct WindowFeature {
 };
 
 /// What is known of states of the window from all that left it: a quadratic in the deltas of the
-/// frames and, last, of gravity, 0.5 d' H d + b' d.
+/// frames and, last, of the globals, 0.5 d' H d + b' d.
 struct WindowPrior {
   std::vector<int> frame_ids;
   Eigen::MatrixXd H;
@@ -130,7 +150,8 @@ struct Window {
   std::vector<VioCamera> cameras;
   SE3 T_imu_vehicle;
   WindowGravity gravity;
-  std::vector<WindowFrame> frames;  ///< in the order of time
+  std::vector<CameraRefinement> refinements;  ///< one per camera, or none: calibration is believed
+  std::vector<WindowFrame> frames;            ///< in the order of time
   std::map<std::uint64_t, WindowFeature> features;
   WindowPrior prior;
   StartPrior start;
@@ -139,9 +160,17 @@ struct Window {
   [[nodiscard]] int indexOf(int frame_id) const;
   [[nodiscard]] WindowFrame* find(int frame_id);
   [[nodiscard]] const WindowFrame* find(int frame_id) const;
+  /// The globals: gravity's two degrees of freedom, then seven of every refined camera.
+  [[nodiscard]] Eigen::Index globalSize() const;
+  [[nodiscard]] Eigen::VectorXd globalDelta() const;
+  void applyGlobals(const Eigen::VectorXd& step);
+  void fixGlobals();
   /// A feature's point in the odom frame.
   [[nodiscard]] Eigen::Vector3d pointOf(const WindowFeature& feature) const;
 };
+
+/// An observation's pixel at the frame's instant, given its camera's time offset.
+Eigen::Vector2d observedPixel(const Window& window, const WindowObservation& observation);
 
 /// Two unit vectors across a direction, as columns; a smooth function of it but near -z.
 Eigen::Matrix<double, 3, 2> tangentBasis(const Eigen::Vector3d& direction);

@@ -14,7 +14,6 @@ namespace parkade {
 namespace {
 
 constexpr int kState = 15;
-constexpr int kGravity = 2;
 constexpr double kMaxDamping = 1e6;
 
 // What a step changes, to be able to take it back.
@@ -26,12 +25,16 @@ struct Backup {
   };
   std::vector<Frame> frames;
   WindowGravity gravity;
+  std::vector<VioCamera> cameras;
+  std::vector<CameraRefinement> refinements;
   std::vector<std::pair<Eigen::Vector3d, double>> landmarks;
 
   void save(const Window& window, const std::vector<WindowFeature*>& features) {
     frames.clear();
     landmarks.clear();
     gravity = window.gravity;
+    refinements = window.refinements;
+    if (!refinements.empty()) cameras = window.cameras;
     for (const WindowFrame& f : window.frames) frames.push_back({f.state, f.bias, f.delta});
     for (const WindowFeature* f : features) {
       landmarks.emplace_back(f->direction, f->inverse_distance);
@@ -39,6 +42,8 @@ struct Backup {
   }
   void restore(Window& window, const std::vector<WindowFeature*>& features) const {
     window.gravity = gravity;
+    window.refinements = refinements;
+    if (!refinements.empty()) window.cameras = cameras;
     for (std::size_t i = 0; i < frames.size(); ++i) {
       window.frames[i].state = frames[i].state;
       window.frames[i].bias = frames[i].bias;
@@ -51,15 +56,16 @@ struct Backup {
   }
 };
 
-// The marginal of the newest frame and gravity needs only the end of the Cholesky factor.
-void setCovariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& llt, SolveSummary& summary) {
-  constexpr int kSize = kState + kGravity;
-  using Block = Eigen::Matrix<double, kSize, kSize>;
-  const Block corner = llt.matrixLLT().bottomRightCorner<kSize, kSize>();
-  const Block corner_inverse = corner.triangularView<Eigen::Lower>().solve(Block::Identity());
-  const Block covariance = corner_inverse.transpose() * corner_inverse;
+// The marginal of the newest frame and the globals needs only the end of the Cholesky factor.
+void setCovariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& llt, Eigen::Index globals,
+                   SolveSummary& summary) {
+  const Eigen::Index size = kState + globals;
+  const Eigen::MatrixXd corner = llt.matrixLLT().bottomRightCorner(size, size);
+  const Eigen::MatrixXd corner_inverse =
+      corner.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(size, size));
+  const Eigen::MatrixXd covariance = corner_inverse.transpose() * corner_inverse;
   summary.newest_covariance = covariance.topLeftCorner<kState, kState>();
-  summary.gravity_covariance = covariance.bottomRightCorner<kGravity, kGravity>();
+  summary.global_covariance = covariance.bottomRightCorner(globals, globals);
   summary.has_covariance = true;
 }
 
@@ -98,10 +104,10 @@ SolveSummary solveWindow(Window& window, const std::vector<WindowFeature*>& feat
     for (std::size_t i = 0; i < window.frames.size(); ++i) {
       window.frames[i].apply(step.segment<kState>(kState * static_cast<Eigen::Index>(i)));
     }
-    window.gravity.apply(step.tail<kGravity>());
+    window.applyGlobals(step.tail(window.globalSize()));
     const double decrease = -0.5 * gradient_dot_step;
     // Damping would pass for knowledge of where the whole window is.
-    if (damping == 0.0) setCovariance(llt, summary);
+    if (damping == 0.0) setCovariance(llt, window.globalSize(), summary);
     summary.ok = true;
     if (decrease < options.min_decrease || summary.iterations == options.max_iterations) {
       summary.final_cost = system.cost() - decrease;
@@ -127,7 +133,7 @@ SolveSummary solveAtRest(Window& window, const std::vector<WindowFeature*>& feat
   FactorSelection selection = FactorSelection::all(window);
   LinearSystem system(options.huber, options.still);
   const auto free_rows =
-      kState * static_cast<Eigen::Index>(window.frames.size() - first_free) + kGravity;
+      kState * static_cast<Eigen::Index>(window.frames.size() - first_free) + window.globalSize();
   summary.initial_cost = system.linearise(window, selection);
   for (; summary.iterations < options.max_iterations; ++summary.iterations) {
     system.reduce(0.0);
@@ -140,7 +146,7 @@ SolveSummary solveAtRest(Window& window, const std::vector<WindowFeature*>& feat
       window.frames[i].apply(
           step.segment<kState>(kState * static_cast<Eigen::Index>(i - first_free)));
     }
-    window.gravity.apply(step.tail<kGravity>());
+    window.applyGlobals(step.tail(window.globalSize()));
     const double promised = -0.5 * system.gradient().tail(free_rows).dot(step);
     summary.final_cost = system.linearise(window, selection);
     if (promised < options.min_decrease) break;
@@ -151,7 +157,7 @@ SolveSummary solveAtRest(Window& window, const std::vector<WindowFeature*>& feat
   summary.observations = system.numObservations();
   system.reduce(0.0);
   const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> llt(system.reducedH());
-  if (llt.info() == Eigen::Success) setCovariance(llt, summary);
+  if (llt.info() == Eigen::Success) setCovariance(llt, window.globalSize(), summary);
   return summary;
 }
 
@@ -169,7 +175,7 @@ double whitenedError(const Window& window, const WindowFeature& feature,
                  pixel)) {
     return std::numeric_limits<double>::infinity();
   }
-  return (pixel - observation.pixel).norm() / observation.sigma_px;
+  return (pixel - observedPixel(window, observation)).norm() / observation.sigma_px;
 }
 
 Eigen::Matrix3d landmarkCovariance(const Window& window, const WindowFeature& feature) {

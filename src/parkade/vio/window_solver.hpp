@@ -26,7 +26,7 @@ struct SolveSummary {
   bool has_covariance = false;
   /// Of the newest frame's tangent, from the information of the whole window and its prior.
   Matrix15d newest_covariance = Matrix15d::Zero();
-  Eigen::Matrix2d gravity_covariance = Eigen::Matrix2d::Zero();  ///< of its direction, rad^2
+  Eigen::MatrixXd global_covariance;  ///< of the window's globals, gravity's direction first
 };
 
 /// Levenberg-Marquardt over the frames and the given landmarks, which are eliminated in each step.
@@ -34,7 +34,7 @@ struct SolveSummary {
 SolveSummary solveWindow(Window& window, const std::vector<WindowFeature*>& features,
                          const SolveOptions& options);
 
-/// The same for a car at rest: only the frames from `first_free` on and gravity move, by their
+/// The same for a car at rest: only the frames from `first_free` on and the globals move, by their
 /// readings and the rest alone; landmarks and the frames before stay as they are. The covariance is
 /// still that of the whole window with the given landmarks.
 SolveSummary solveAtRest(Window& window, const std::vector<WindowFeature*>& features,

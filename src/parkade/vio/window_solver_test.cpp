@@ -273,9 +273,21 @@ TEST(WindowSolver, FindsTheMinimumThatCeresFinds) {
   }
 }
 
-TEST(WindowSolver, GradientAndMatrixAreThoseOfTheCost) {
+class WindowGradient : public ::testing::TestWithParam<bool> {};
+
+TEST_P(WindowGradient, IsThatOfTheCost) {
   std::vector<WindowFeature*> features;
   Window window = makeWindow(3, 0.5, features);
+  if (GetParam()) {
+    for (const VioCamera& camera : window.cameras) {
+      CameraRefinement refinement;
+      refinement.prior_T_imu_cam =
+          camera.T_imu_cam *
+          SE3(SO3::exp(Eigen::Vector3d(0.001, 0.002, -0.001)), Eigen::Vector3d(0.001, 0.0, 0.002));
+      refinement.sigma.setConstant(0.01);
+      window.refinements.push_back(refinement);
+    }
+  }
   disturb(window, 0.002, 3);
   features.resize(20);
   FactorSelection selection = FactorSelection::all(window);
@@ -288,13 +300,14 @@ TEST(WindowSolver, GradientAndMatrixAreThoseOfTheCost) {
     for (std::size_t i = 0; i < other.frames.size(); ++i) {
       other.frames[i].apply(step.segment<kState>(kState * static_cast<Eigen::Index>(i)));
     }
-    other.gravity.apply(step.tail<2>());
+    other.applyGlobals(step.tail(window.globalSize()));
     LinearSystem at(1e9, still);
     return at.linearise(other, selection);
   };
   const double h = 1e-6;
-  for (Eigen::Index i = 0; i < kState * 3 + 2; ++i) {
-    Eigen::VectorXd step = Eigen::VectorXd::Zero(kState * 3 + 2);
+  const Eigen::Index size = kState * 3 + window.globalSize();
+  for (Eigen::Index i = 0; i < size; ++i) {
+    Eigen::VectorXd step = Eigen::VectorXd::Zero(size);
     step(i) = h;
     const double above = costAt(step);
     step(i) = -h;
@@ -302,6 +315,8 @@ TEST(WindowSolver, GradientAndMatrixAreThoseOfTheCost) {
     EXPECT_NEAR(system.gradient()(i), slope, 2e-4 * std::abs(slope) + 0.5) << i;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Calibration, WindowGradient, ::testing::Values(false, true));
 
 TEST(Marginalisation, PriorStandsForWhatLeft) {
   // With exact pixels and readings the point of linearisation is the minimum: what is left after a
