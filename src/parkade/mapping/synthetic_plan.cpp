@@ -59,13 +59,13 @@ Plan makePlan(int aisles, double length, double occupancy, std::uint64_t seed) {
                               {2.0, 0.5}});
     }
     for (int i = 0; i * 3 <= count; ++i) {
-      // A pillar between every third pair of rows, set back, with its zone's text.
-      const Vector2d at(x0 + 3.0 * i * kSlotWidth, y + kHalfAisle + kSlotDepth + 0.0);
-      plan.objects.push_back({SemanticClass::kPillar, {at.x(), at.y(), 0.0}, 0.0, "", {0.6, 0.6}});
+      // A pillar on every third line, set back from the aisle, with its zone's text.
+      const Vector2d at(x0 + 3.0 * i * kSlotWidth, y + kHalfAisle + 1.0);
+      plan.objects.push_back({SemanticClass::kPillar, {at.x(), at.y(), 0.0}, 0.0, "", {0.4, 0.4}});
       const std::string text =
           std::string(1, static_cast<char>('A' + k)) + std::to_string(i / 2 + 1);
       plan.objects.push_back(
-          {SemanticClass::kZoneMarker, {at.x(), at.y() - 0.31, 1.6}, -M_PI / 2, text, {0.0, 0.0}});
+          {SemanticClass::kZoneMarker, {at.x(), at.y() - 0.21, 1.6}, -M_PI / 2, text, {0.0, 0.0}});
     }
   }
   return plan;

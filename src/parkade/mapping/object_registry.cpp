@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/mapping/object_registry.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace parkade {
+namespace {
+
+constexpr double kGate = 16.27;  // 99.9 % of chi-square, 3 degrees
+
+}  // namespace
+
+bool ObjectRegistry::compatible(const Track& track, SemanticClass c, const Eigen::Vector3d& p,
+                                double heading, bool has_heading) const {
+  if (track.semantic_class != c) return false;
+  if ((p - track.position).head<2>().norm() > options_.max_distance_m) return false;
+  if (!has_heading || track.heading.norm() == 0.0) return true;
+  // A pillar's faces carry the same text: only the one that looks the same way is the same marker.
+  const Eigen::Vector2d direction(std::cos(heading), std::sin(heading));
+  return direction.dot(track.heading) > 0.5 * track.heading.norm();
+}
+
+void ObjectRegistry::fuse(Track& track, const Eigen::Vector3d& p,
+                          const Eigen::Matrix3d& covariance) {
+  const Eigen::Matrix3d S = track.covariance + covariance;
+  const Eigen::Matrix3d K = S.llt().solve(track.covariance).transpose();
+  track.position += K * (p - track.position);
+  track.covariance = ((Eigen::Matrix3d::Identity() - K) * track.covariance).eval();
+  track.covariance = (0.5 * (track.covariance + track.covariance.transpose())).eval();
+}
+
+void ObjectRegistry::update(const std::vector<ObjectObservation>& observations,
+                            const SE2& T_world_vehicle, double z_vehicle, std::int64_t anchor) {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  R.topLeftCorner<2, 2>() = T_world_vehicle.rotationMatrix();
+  const double floor2 = options_.position_floor_m * options_.position_floor_m;
+  const double sigma2 = options_.association_sigma_m * options_.association_sigma_m;
+  std::vector<bool> used(tracks_.size(), false);
+  for (const ObjectObservation& o : observations) {
+    Eigen::Vector3d p;
+    p << T_world_vehicle * o.position.head<2>(), o.position.z() + z_vehicle;
+    const Eigen::Matrix3d covariance =
+        R * o.covariance * R.transpose() + floor2 * Eigen::Matrix3d::Identity();
+    const double heading = wrapAngle(o.heading + T_world_vehicle.angle());
+    const bool has_heading = o.sigma_heading > 0.0;
+    std::size_t best = tracks_.size();
+    double best_distance = kGate;
+    for (std::size_t i = 0; i < used.size(); ++i) {
+      if (used[i] || !compatible(tracks_[i], o.semantic_class, p, heading, has_heading)) continue;
+      const Eigen::Matrix3d S =
+          tracks_[i].covariance + covariance + sigma2 * Eigen::Matrix3d::Identity();
+      const Eigen::Vector3d d = p - tracks_[i].position;
+      const double distance = d.dot(S.llt().solve(d));
+      if (distance >= best_distance) continue;
+      best_distance = distance;
+      best = i;
+    }
+    if (best == tracks_.size()) {
+      Track track;
+      track.id = next_id_++;
+      track.anchor = anchor;
+      track.semantic_class = o.semantic_class;
+      track.position = p;
+      track.covariance = covariance;
+      tracks_.push_back(track);
+    } else {
+      used[best] = true;
+      fuse(tracks_[best], p, covariance);
+    }
+    Track& track = tracks_[best];
+    if (has_heading) {
+      const double weight = 1.0 / (o.sigma_heading * o.sigma_heading + 1e-4);
+      track.heading += weight * Eigen::Vector2d(std::cos(heading), std::sin(heading));
+    }
+    track.texts.add(o.text, o.confidence);
+    if (!o.outline.empty() && o.confidence >= track.outline_confidence) {
+      track.outline_confidence = o.confidence;
+      track.outline.clear();
+      for (const Eigen::Vector2d& q : o.outline) track.outline.push_back(T_world_vehicle * q);
+    }
+    ++track.observations;
+  }
+}
+
+void ObjectRegistry::mergeDuplicates() {
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    for (std::size_t j = tracks_.size() - 1; j > i; --j) {
+      Track& a = tracks_[i];
+      const Track& b = tracks_[j];
+      const double heading = std::atan2(b.heading.y(), b.heading.x());
+      if (!compatible(a, b.semantic_class, b.position, heading, b.heading.norm() > 0.0)) continue;
+      const Eigen::Vector3d d = b.position - a.position;
+      const double sigma2 = options_.association_sigma_m * options_.association_sigma_m;
+      const Eigen::Matrix3d S = a.covariance + b.covariance + sigma2 * Eigen::Matrix3d::Identity();
+      if (d.dot(S.llt().solve(d)) > kGate) continue;
+      fuse(a, b.position, b.covariance);
+      a.heading += b.heading;
+      a.texts.add(b.texts);
+      a.observations += b.observations;
+      if (b.outline_confidence > a.outline_confidence) {
+        a.outline = b.outline;
+        a.outline_confidence = b.outline_confidence;
+      }
+      tracks_.erase(tracks_.begin() + static_cast<std::ptrdiff_t>(j));
+    }
+  }
+}
+
+void ObjectRegistry::moveWithAnchors(const std::function<SE2(std::int64_t)>& correction) {
+  for (Track& track : tracks_) {
+    const SE2 T = correction(track.anchor);
+    Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+    R.topLeftCorner<2, 2>() = T.rotationMatrix();
+    track.position.head<2>() = T * track.position.head<2>();
+    track.covariance = (R * track.covariance * R.transpose()).eval();
+    track.heading = T.rotationMatrix() * track.heading;
+    for (Eigen::Vector2d& q : track.outline) q = T * q;
+  }
+  mergeDuplicates();
+}
+
+std::vector<MapObject> ObjectRegistry::objects() const {
+  std::vector<MapObject> result;
+  for (const Track& track : tracks_) {
+    if (track.observations < options_.min_observations) continue;
+    MapObject object;
+    object.id = track.id;
+    object.semantic_class = track.semantic_class;
+    object.position = track.position;
+    object.heading =
+        track.heading.norm() > 0.0 ? std::atan2(track.heading.y(), track.heading.x()) : 0.0;
+    object.position_sigma = std::sqrt(std::max(0.0, track.covariance.trace() / 3.0));
+    object.text = track.texts.best();
+    object.outline = track.outline;
+    object.observations = track.observations;
+    result.push_back(std::move(object));
+  }
+  return result;
+}
+
+}  // namespace parkade

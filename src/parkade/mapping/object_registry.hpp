@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "parkade/core/options.hpp"
+#include "parkade/core/time.hpp"
+#include "parkade/geometry/se2.hpp"
+#include "parkade/mapping/parking_map.hpp"
+#include "parkade/mapping/votes.hpp"
+
+namespace parkade {
+
+struct ObjectRegistryOptions {
+  double association_sigma_m = 0.15;
+  double max_distance_m = 1.0;
+  double position_floor_m = 0.03;
+  int min_observations = 3;
+
+  void visit(OptionVisitor& v) {
+    v.field("association_sigma_m", association_sigma_m, "m",
+            "What an object may lie off beside its covariance: errors of the pose.", 0.0, 2.0);
+    v.field("max_distance_m", max_distance_m, "m", "Objects farther apart are never one.", 0.1,
+            10.0);
+    v.field("position_floor_m", position_floor_m, "m", "No place is measured better than this.",
+            1e-4, 1.0);
+    v.field("min_observations", min_observations, "count", "Objects seen less often are not told.",
+            1, 1000);
+  }
+};
+
+/// Arrows, limits, stop lines, crossings, bumps, pillars, zone markers and signs that were seen:
+/// stable ids, places fused over all observations, texts by vote, none twice. World frame.
+class ObjectRegistry {
+ public:
+  explicit ObjectRegistry(const ObjectRegistryOptions& options) : options_(options) {}
+
+  void update(const std::vector<ObjectObservation>& observations, const SE2& T_world_vehicle,
+              double z_vehicle, std::int64_t anchor);
+  /// As SlotRegistry's.
+  void moveWithAnchors(const std::function<SE2(std::int64_t)>& correction);
+  /// Those seen often enough, ordered by id.
+  [[nodiscard]] std::vector<MapObject> objects() const;
+
+ private:
+  struct Track {
+    std::int64_t id = 0;
+    std::int64_t anchor = 0;
+    SemanticClass semantic_class = SemanticClass::kUnknown;
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    Eigen::Vector2d heading = Eigen::Vector2d::Zero();  // sum of unit vectors, weighted
+    Votes texts;
+    std::vector<Eigen::Vector2d> outline;
+    double outline_confidence = 0.0;
+    std::int64_t observations = 0;
+  };
+  [[nodiscard]] bool compatible(const Track& a, SemanticClass c, const Eigen::Vector3d& p,
+                                double heading, bool has_heading) const;
+  static void fuse(Track& track, const Eigen::Vector3d& p, const Eigen::Matrix3d& covariance);
+  void mergeDuplicates();
+
+  ObjectRegistryOptions options_;
+  std::vector<Track> tracks_;
+  std::int64_t next_id_ = 1;
+};
+
+}  // namespace parkade

@@ -1,0 +1,302 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/mapping/slot_registry.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "parkade/mapping/map_check.hpp"
+#include "parkade/mapping/votes.hpp"
+
+namespace parkade {
+namespace {
+
+using Vector4 = Eigen::Vector4d;
+using Matrix4 = Eigen::Matrix4d;
+using Corners = std::array<Eigen::Vector2d, 4>;
+
+struct Track {
+  std::int64_t id = 0;
+  std::int64_t anchor = 0;
+  Vector4 entrance = Vector4::Zero();  // left x y, right x y
+  Matrix4 covariance = Matrix4::Zero();
+  Eigen::Vector2d rear_left = Eigen::Vector2d::Zero();   // from the entrance's left corner
+  Eigen::Vector2d rear_right = Eigen::Vector2d::Zero();  // from its right corner
+  double rear_weight = 0.0;
+  double log_odds_free = 0.0;
+  TimeNs availability_ns = 0;
+  double confidence = 0.0;  // sum
+  std::int64_t observations = 0;
+  std::int64_t misses = 0;
+  TimeNs last_seen_ns = 0;
+  Votes numbers;
+  std::array<double, 3> shapes{};
+
+  [[nodiscard]] Corners corners() const {
+    const Eigen::Vector2d left = entrance.head<2>();
+    const Eigen::Vector2d right = entrance.tail<2>();
+    return {left, right, right + rear_right, left + rear_left};
+  }
+  [[nodiscard]] Eigen::Vector2d middle() const {
+    return 0.5 * (entrance.head<2>() + entrance.tail<2>());
+  }
+  [[nodiscard]] double width() const { return (entrance.tail<2>() - entrance.head<2>()).norm(); }
+};
+
+// An observation in the world.
+struct Seen {
+  Vector4 entrance = Vector4::Zero();
+  Matrix4 covariance = Matrix4::Zero();
+  Eigen::Vector2d rear_left = Eigen::Vector2d::Zero();
+  Eigen::Vector2d rear_right = Eigen::Vector2d::Zero();
+  const SlotObservation* source = nullptr;
+};
+
+double logOdds(double p) {
+  const double inside = std::clamp(p, 0.02, 0.98);
+  return std::log(inside / (1.0 - inside));
+}
+
+Seen toWorld(const SlotObservation& o, const SE2& T, double floor) {
+  Seen seen;
+  seen.source = &o;
+  const Eigen::Vector2d left = T * o.corners[0];
+  const Eigen::Vector2d right = T * o.corners[1];
+  seen.entrance << left, right;
+  seen.rear_right = T * o.corners[2] - right;
+  seen.rear_left = T * o.corners[3] - left;
+  Matrix4 R = Matrix4::Zero();
+  R.topLeftCorner<2, 2>() = T.rotationMatrix();
+  R.bottomRightCorner<2, 2>() = T.rotationMatrix();
+  seen.covariance = R * o.entrance_covariance * R.transpose() + floor * floor * Matrix4::Identity();
+  return seen;
+}
+
+// Same direction to within 25 degrees and middles nearer than half a width: no neighbour does that.
+bool mayBeSame(const Track& track, const Seen& seen) {
+  const Eigen::Vector2d a = track.entrance.tail<2>() - track.entrance.head<2>();
+  const Eigen::Vector2d b = seen.entrance.tail<2>() - seen.entrance.head<2>();
+  constexpr double kCosine = 0.906;
+  if (a.dot(b) < kCosine * a.norm() * b.norm()) return false;
+  const Eigen::Vector2d middle = 0.5 * (seen.entrance.head<2>() + seen.entrance.tail<2>());
+  return (middle - track.middle()).norm() < 0.45 * std::min(a.norm(), b.norm());
+}
+
+}  // namespace
+
+struct SlotRegistry::Impl {
+  SlotRegistryOptions options;
+  std::vector<Track> tracks;  // ordered by id
+  std::int64_t next_id = 1;
+
+  [[nodiscard]] double fadedLogOdds(const Track& track, TimeNs now_ns) const {
+    const double seconds = std::max(0.0, toSeconds(now_ns - track.availability_ns));
+    return track.log_odds_free * std::exp(-seconds / options.change_time_s);
+  }
+  void fuse(Track& track, const Seen& seen, TimeNs t_ns) const;
+  void add(const Seen& seen, TimeNs t_ns, std::int64_t anchor);
+  void countMisses(const SE2& T_world_vehicle, const std::vector<bool>& was_seen,
+                   std::size_t old_count);
+  void mergeDuplicates();
+  [[nodiscard]] bool told(const Track& track) const {
+    // Seen rarely while in plain sight: something else.
+    return track.observations >= options.min_observations &&
+           track.misses <= 3 * track.observations + 5;
+  }
+};
+
+void SlotRegistry::Impl::fuse(Track& track, const Seen& seen, TimeNs t_ns) const {
+  const Matrix4 S = track.covariance + seen.covariance;
+  const Matrix4 K = S.llt().solve(track.covariance).transpose();
+  track.entrance += K * (seen.entrance - track.entrance);
+  track.covariance = ((Matrix4::Identity() - K) * track.covariance).eval();
+  track.covariance = (0.5 * (track.covariance + track.covariance.transpose())).eval();
+  constexpr double kGuess = 0.05;  // weight of rear corners that were completed, not seen
+  const double weight = seen.source->rear_seen ? 1.0 : kGuess;
+  const double share = weight / (track.rear_weight + weight);
+  track.rear_left += share * (seen.rear_left - track.rear_left);
+  track.rear_right += share * (seen.rear_right - track.rear_right);
+  track.rear_weight += weight;
+  constexpr double kLimit = 5.0;
+  track.log_odds_free =
+      std::clamp(fadedLogOdds(track, t_ns) +
+                     options.availability_gain * logOdds(seen.source->probability_free),
+                 -kLimit, kLimit);
+  track.availability_ns = t_ns;
+  track.last_seen_ns = t_ns;
+  ++track.observations;
+  track.confidence += seen.source->confidence;
+  track.numbers.add(seen.source->number, seen.source->confidence);
+  track.shapes[static_cast<std::size_t>(seen.source->shape)] += seen.source->confidence;
+}
+
+void SlotRegistry::Impl::add(const Seen& seen, TimeNs t_ns, std::int64_t anchor) {
+  Track track;
+  track.id = next_id++;
+  track.anchor = anchor;
+  track.entrance = seen.entrance;
+  track.covariance = seen.covariance;
+  track.rear_left = seen.rear_left;
+  track.rear_right = seen.rear_right;
+  track.availability_ns = t_ns;
+  tracks.push_back(track);
+  Track& added = tracks.back();
+  const Matrix4 own = added.covariance;
+  fuse(added, seen, t_ns);
+  added.covariance = own;  // one observation counts once
+}
+
+void SlotRegistry::Impl::countMisses(const SE2& T_world_vehicle, const std::vector<bool>& was_seen,
+                                     std::size_t old_count) {
+  for (std::size_t i = 0; i < old_count; ++i) {
+    constexpr double kPlainSight = 4.0;
+    const Eigen::Vector2d from = T_world_vehicle.inverse() * tracks[i].middle();
+    if (!was_seen[i] && from.norm() < kPlainSight) ++tracks[i].misses;
+  }
+}
+
+void SlotRegistry::Impl::mergeDuplicates() {
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    for (std::size_t j = tracks.size() - 1; j > i; --j) {
+      if ((tracks[i].middle() - tracks[j].middle()).norm() > 6.0) continue;
+      const double share = overlapShare(tracks[i].corners(), tracks[j].corners());
+      if (share < options.duplicate_overlap) continue;
+      Track& kept = tracks[i];
+      Track other = tracks[j];
+      // The one seen more often has the better shape; the older id stays.
+      const std::int64_t id = kept.id;
+      if (other.observations > kept.observations) std::swap(kept, other);
+      kept.id = id;
+      const Eigen::Vector2d a = kept.entrance.tail<2>() - kept.entrance.head<2>();
+      const Eigen::Vector2d b = other.entrance.tail<2>() - other.entrance.head<2>();
+      if (a.dot(b) > 0.9 * a.norm() * b.norm()) {
+        const Matrix4 K =
+            (kept.covariance + other.covariance).llt().solve(kept.covariance).transpose();
+        kept.entrance += K * (other.entrance - kept.entrance);
+        kept.covariance = ((Matrix4::Identity() - K) * kept.covariance).eval();
+        kept.covariance = (0.5 * (kept.covariance + kept.covariance.transpose())).eval();
+      }
+      if (other.availability_ns > kept.availability_ns) {
+        kept.log_odds_free = other.log_odds_free;
+        kept.availability_ns = other.availability_ns;
+      }
+      kept.last_seen_ns = std::max(kept.last_seen_ns, other.last_seen_ns);
+      kept.observations += other.observations;
+      kept.misses += other.misses;
+      kept.confidence += other.confidence;
+      kept.numbers.add(other.numbers);
+      for (std::size_t k = 0; k < kept.shapes.size(); ++k) kept.shapes[k] += other.shapes[k];
+      tracks.erase(tracks.begin() + static_cast<std::ptrdiff_t>(j));
+    }
+  }
+}
+
+SlotRegistry::SlotRegistry(const SlotRegistryOptions& options) : impl_(std::make_unique<Impl>()) {
+  impl_->options = options;
+}
+SlotRegistry::~SlotRegistry() = default;
+SlotRegistry::SlotRegistry(SlotRegistry&&) noexcept = default;
+SlotRegistry& SlotRegistry::operator=(SlotRegistry&&) noexcept = default;
+
+void SlotRegistry::update(const std::vector<SlotObservation>& observations, TimeNs t_ns,
+                          const SE2& T_world_vehicle, std::int64_t anchor) {
+  Impl& m = *impl_;
+  struct Pair {
+    double distance;
+    std::size_t track;
+    std::size_t seen;
+  };
+  std::vector<Seen> all;
+  for (const SlotObservation& o : observations) {
+    all.push_back(toWorld(o, T_world_vehicle, m.options.corner_floor_m));
+  }
+  const double sigma2 = m.options.association_sigma_m * m.options.association_sigma_m;
+  // Chi-square of 4 degrees by its normal form; the registry may not see the filter's table.
+  const double gate = chiSquareGate4(m.options.gate_probability);
+  std::vector<Pair> pairs;
+  for (std::size_t j = 0; j < all.size(); ++j) {
+    for (std::size_t i = 0; i < m.tracks.size(); ++i) {
+      if (!mayBeSame(m.tracks[i], all[j])) continue;
+      const Matrix4 S = m.tracks[i].covariance + all[j].covariance + sigma2 * Matrix4::Identity();
+      const Vector4 d = all[j].entrance - m.tracks[i].entrance;
+      const double distance = d.dot(S.llt().solve(d));
+      if (distance < gate) pairs.push_back({distance, i, j});
+    }
+  }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
+  const std::size_t old_count = m.tracks.size();
+  std::vector<bool> track_used(old_count, false);
+  std::vector<bool> seen_used(all.size(), false);
+  for (const Pair& pair : pairs) {
+    if (track_used[pair.track] || seen_used[pair.seen]) continue;
+    track_used[pair.track] = true;
+    seen_used[pair.seen] = true;
+    m.fuse(m.tracks[pair.track], all[pair.seen], t_ns);
+  }
+  for (std::size_t j = 0; j < all.size(); ++j) {
+    if (seen_used[j]) continue;
+    const Vector4& e = all[j].entrance;
+    const Corners corners = {e.head<2>(), e.tail<2>(), e.tail<2>() + all[j].rear_right,
+                             e.head<2>() + all[j].rear_left};
+    // What lies on a known slot is that slot seen badly, never a second one.
+    const bool on_known = std::any_of(m.tracks.begin(), m.tracks.end(), [&](const Track& track) {
+      return (track.middle() - 0.5 * (e.head<2>() + e.tail<2>())).norm() < 6.0 &&
+             overlapShare(track.corners(), corners) > m.options.duplicate_overlap;
+    });
+    if (!on_known) m.add(all[j], t_ns, anchor);
+  }
+  m.countMisses(T_world_vehicle, track_used, old_count);
+}
+
+void SlotRegistry::moveWithAnchors(const std::function<SE2(std::int64_t)>& correction) {
+  for (Track& track : impl_->tracks) {
+    const SE2 T = correction(track.anchor);
+    const Eigen::Matrix2d R = T.rotationMatrix();
+    const Eigen::Vector2d left = T * track.entrance.head<2>();
+    const Eigen::Vector2d right = T * track.entrance.tail<2>();
+    track.entrance << left, right;
+    track.rear_left = R * track.rear_left;
+    track.rear_right = R * track.rear_right;
+    Matrix4 turn = Matrix4::Zero();
+    turn.topLeftCorner<2, 2>() = R;
+    turn.bottomRightCorner<2, 2>() = R;
+    track.covariance = (turn * track.covariance * turn.transpose()).eval();
+  }
+  impl_->mergeDuplicates();
+}
+
+int SlotRegistry::candidates() const {
+  return static_cast<int>(impl_->tracks.size());
+}
+
+std::vector<MapSlot> SlotRegistry::slots(TimeNs now_ns,
+                                         const std::vector<MapObject>& objects) const {
+  std::vector<MapSlot> result;
+  for (const Track& track : impl_->tracks) {
+    if (!impl_->told(track)) continue;
+    MapSlot slot;
+    slot.id = track.id;
+    slot.corners = track.corners();
+    slot.corner_sigma = std::sqrt(std::max(0.0, track.covariance.trace() / 4.0));
+    slot.shape = static_cast<SlotShape>(std::max_element(track.shapes.begin(), track.shapes.end()) -
+                                        track.shapes.begin());
+    slot.number = track.numbers.best();
+    slot.probability_free = 1.0 / (1.0 + std::exp(-impl_->fadedLogOdds(track, now_ns)));
+    slot.observations = track.observations;
+    slot.last_seen_ns = track.last_seen_ns;
+    double nearest = impl_->options.zone_range_m;
+    for (const MapObject& object : objects) {
+      if (object.semantic_class != SemanticClass::kZoneMarker || object.text.empty()) continue;
+      const double distance = (object.position.head<2>() - track.middle()).norm();
+      if (distance >= nearest) continue;
+      nearest = distance;
+      slot.zone = object.text;
+    }
+    result.push_back(std::move(slot));
+  }
+  return result;
+}
+
+}  // namespace parkade
