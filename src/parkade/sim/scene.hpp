@@ -87,6 +87,10 @@ class FloorSurface {
   virtual ~FloorSurface() = default;
   /// The footprint is the diameter in metres of the disc to average over.
   [[nodiscard]] virtual FloorSample sample(float x, float y, float footprint) const = 0;
+  /// The mean over count neighbouring places (at least 1), each averaged over the footprint; its
+  /// label is of no use.
+  [[nodiscard]] virtual FloorSample mean(const float* x, const float* y, int count,
+                                         float footprint) const;
 };
 
 struct Scene {

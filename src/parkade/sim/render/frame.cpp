@@ -26,6 +26,13 @@ struct TileSamples {
   std::array<Eigen::Vector3f, kTilePixels * kMaxSamples> directions;
 };
 
+/// What a pixel mirrors.
+struct MirrorSource {
+  Surface surface;
+  Eigen::Vector3f direction = Eigen::Vector3f::UnitZ();
+  float weight = 0.0F;  ///< reflectance times the share of the pixel
+};
+
 class FrameTracer {
  public:
   FrameTracer(const FrameSetup& setup, const RayTable& table, const SE3& T_world_cam)
@@ -42,8 +49,11 @@ class FrameTracer {
 
  private:
   [[nodiscard]] RTCScene movingIn(int tile, bool mirrored) const;
+  /// The pixel without mirror images; main: the surface whose image shows best, weight: how well.
   Eigen::Vector3f shadePixel(const SurfaceHit* hits, const Eigen::Vector3f* directions,
-                             float spread, int x, int y, MirrorRay& mirror) const;
+                             float spread, MirrorSource& main) const;
+  void traceMirrors(int tile, std::vector<MirrorRay>& floor, const std::vector<MirrorRay>& other,
+                    Radiance& out, ReflectionBuffer& mirror) const;
 
   const FrameSetup& setup_;
   const RayTable& table_;
@@ -106,11 +116,10 @@ void FrameTracer::traceTile(int tile, TileSamples& out) const {
 }
 
 Eigen::Vector3f FrameTracer::shadePixel(const SurfaceHit* hits, const Eigen::Vector3f* directions,
-                                        float spread, int x, int y, MirrorRay& mirror) const {
+                                        float spread, MirrorSource& main) const {
   const Shader& shader = *setup_.shader;
   const Moment& moment = *setup_.moment;
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  float best = 0.0F;
   unsigned done = 0;
   for (int i = 0; i < samples_; ++i) {
     if ((done >> static_cast<unsigned>(i) & 1U) != 0U || hits[i].t < 0.0F) {
@@ -150,9 +159,9 @@ Eigen::Vector3f FrameTracer::shadePixel(const SurfaceHit* hits, const Eigen::Vec
     const float cosine = -rays[0]->dot(surface.normal);
     const float weight = mirrorReflectance(surface.specular, surface.roughness, cosine) *
                          static_cast<float>(count) / static_cast<float>(samples_);
-    if (weight > best && (surface.is_floor || (weight > kFaintest && surface.roughness < kSharp))) {
-      best = weight;
-      mirror = makeMirrorRay(shader.lamps(), surface, *rays[0], weight, x, y);
+    if (weight > main.weight &&
+        (surface.is_floor || (weight > kFaintest && surface.roughness < kSharp))) {
+      main = {surface, *rays[0], weight};
     }
   }
   return sum / static_cast<float>(samples_);
@@ -162,25 +171,53 @@ void FrameTracer::shadeTile(int tile, const TileSamples& in, Radiance& out,
                             ReflectionBuffer* mirror) const {
   const int left = tile % table_.tilesX() * kTile;
   const int top = tile / table_.tilesX() * kTile;
-  std::array<MirrorRay, kTilePixels> pending;
-  int count = 0;
-  for (int y = 0; y < kTile && top + y < out.height; ++y) {
-    for (int x = 0; x < kTile && left + x < out.width; ++x) {
-      const int first = (y * kTile + x) * samples_;
-      MirrorRay ray;
-      const std::size_t pixel = static_cast<std::size_t>(top + y) * out.width + left + x;
+  const MirrorDensity density = samples_ > 1 ? MirrorDensity::kHalf : MirrorDensity::kQuarter;
+  thread_local std::vector<MirrorRay> floor;
+  thread_local std::vector<MirrorRay> other;
+  floor.clear();
+  other.clear();
+  for (int y = top; y < std::min(top + kTile, out.height); ++y) {
+    for (int x = left; x < std::min(left + kTile, out.width); ++x) {
+      const int first = ((y - top) * kTile + x - left) * samples_;
+      const std::size_t pixel = static_cast<std::size_t>(y) * out.width + x;
+      MirrorSource main;
       out.pixels[pixel] = shadePixel(in.hits.data() + first, in.directions.data() + first,
-                                     table_.spread(left + x, top + y), left + x, top + y, ray);
-      if (ray.weight > 0.0F) {
-        ray.pixel = static_cast<std::uint32_t>(pixel);
-        pending[static_cast<std::size_t>(count++)] = ray;
+                                     table_.spread(x, y), main);
+      if (main.weight <= 0.0F || mirror == nullptr) {
+        continue;
       }
+      int place = 0;
+      if (main.surface.is_floor) {
+        mirror->weights[pixel] = main.weight;
+        place = mirrorPlace(density, x, y);
+        if (place < 0) {
+          continue;
+        }
+      }
+      MirrorRay ray = makeMirrorRay(setup_.shader->lamps(), main.surface, main.direction,
+                                    main.weight, density, place);
+      ray.pixel = static_cast<std::uint32_t>(pixel);
+      (ray.from_floor ? floor : other).push_back(ray);
     }
   }
-  if (mirror == nullptr) {
-    return;
+  if (mirror != nullptr) {
+    traceMirrors(tile, floor, other, out, *mirror);
   }
-  traceMirrorRays(setup_, movingIn(tile, true), pending.data(), count, out, *mirror);
+}
+
+void FrameTracer::traceMirrors(int tile, std::vector<MirrorRay>& floor,
+                               const std::vector<MirrorRay>& other, Radiance& out,
+                               ReflectionBuffer& mirror) const {
+  // Rays of one place of the pattern run alike: side by side they cost half.
+  std::stable_sort(floor.begin(), floor.end(),
+                   [](const MirrorRay& a, const MirrorRay& b) { return a.place < b.place; });
+  if (!floor.empty()) {
+    traceFloorMirror(setup_, movingIn(tile, true), floor.data(), static_cast<int>(floor.size()),
+                     mirror);
+  }
+  if (!other.empty()) {
+    traceMirror(setup_, other.data(), static_cast<int>(other.size()), out);
+  }
 }
 
 void FrameTracer::labelTile(int tile, const TileSamples& in, Truth& out) const {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "parkade/sim/render/texture.hpp"
+#include "parkade/sim/texel.hpp"
 
 namespace parkade::sim {
 namespace {

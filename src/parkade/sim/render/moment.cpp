@@ -18,6 +18,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr float kBeamCandela = 4000.0F;  // dipped, below the cut-off
 constexpr float kBeamReach = 30.0F;      // m
+constexpr float kBeamEdge = 0.7F;        // cosine of the lobe's half angle
 constexpr float kDarkest = 0.12F;        // light left below the middle of a car
 
 bool inCone(const Eigen::Vector3f& center, float radius, const Eigen::Vector3f& eye,
@@ -86,6 +87,9 @@ float Moment::floorShade(float x, float y) const {
   float shade = 1.0F;
   for (const PlacedObject& object : objects) {
     const Eigen::Vector2f d(x - object.shadow_center.x(), y - object.shadow_center.y());
+    if (d.squaredNorm() > object.shadow_reach2) {
+      continue;
+    }
     const float along = std::abs(d.dot(object.shadow_axis)) - object.shadow_half.x();
     const float across = std::abs(object.shadow_axis.x() * d.y() - object.shadow_axis.y() * d.x()) -
                          object.shadow_half.y();
@@ -109,18 +113,19 @@ Eigen::Vector3f Moment::beamLux(const Eigen::Vector3f& p, const Eigen::Vector3f&
   float lux = 0.0F;
   for (const Beam& beam : beams) {
     const Eigen::Vector3f d = p - beam.position;
+    const float ahead = d.dot(beam.direction);
     const float d2 = d.squaredNorm();
-    if (d2 > kBeamReach * kBeamReach) {
+    if (ahead <= 0.0F || ahead * ahead < kBeamEdge * kBeamEdge * d2 ||
+        d2 > kBeamReach * kBeamReach) {
       continue;
     }
     const float inverse = 1.0F / std::sqrt(std::max(d2, 0.04F));
     const float cos_surface = -d.dot(n) * inverse;
-    const float cos_beam = d.dot(beam.direction) * inverse;
-    if (cos_surface <= 0.0F || cos_beam < 0.7F) {
+    if (cos_surface <= 0.0F) {
       continue;
     }
     // A wide lobe, cut off above the horizon as a dipped beam is.
-    const float lobe = (cos_beam - 0.7F) / 0.3F;
+    const float lobe = std::max(ahead * inverse - kBeamEdge, 0.0F) / (1.0F - kBeamEdge);
     const float up = d.z() * inverse;
     const float cut = std::clamp((0.03F - up) / 0.06F, 0.08F, 1.0F);
     lux += kBeamCandela * lobe * lobe * lobe * cut * cos_surface * inverse * inverse;
@@ -187,6 +192,7 @@ void MomentMaker::place(Moment& moment, int mesh, const SE3& T_world_object, std
   // Round corners and the bumpers' ground clearance make the shadow a little smaller than the box.
   object.shadow_half = (half.head<2>().array() - 0.08F).max(0.1F);
   object.shadow_height = std::min(half.z(), 0.8F);
+  object.shadow_reach2 = (object.shadow_half.array() + object.shadow_height).matrix().squaredNorm();
   moment.objects.push_back(std::move(object));
 }
 

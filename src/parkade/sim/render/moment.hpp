@@ -45,6 +45,7 @@ struct PlacedObject {
   Eigen::Vector2f shadow_axis = Eigen::Vector2f::UnitX();
   Eigen::Vector2f shadow_half = Eigen::Vector2f::Zero();
   float shadow_height = 1.0F;
+  float shadow_reach2 = 0.0F;  ///< m^2: no shadow beyond
 };
 
 /// A head lamp's beam.

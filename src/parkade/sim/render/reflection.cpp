@@ -17,22 +17,30 @@ constexpr float kSmooth = 0.2F;         // roughness
 constexpr float kLampRoom = 0.4F;       // m: what hangs this far below the lamps hides none
 constexpr float kMirrorSpread = 0.01F;  // rad: mirror images of textures are a little soft
 
-/// Slopes (microfacet normal against the mean normal) for the 16 places of the pattern: GGX with
-/// unit width, stratified; the widest tail is left out.
-const std::array<Eigen::Vector2f, 16>& lobePattern() {
-  static const std::array<Eigen::Vector2f, 16> kPattern = [] {
-    constexpr std::array<int, 16> kBayer{0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
-    std::array<Eigen::Vector2f, 16> pattern;
-    for (std::size_t i = 0; i < 16; ++i) {
-      const int n = kBayer[i];
-      const float u = 0.9F * (static_cast<float>(n) + 0.5F) / 16.0F;
-      const float angle = 2.39996323F * static_cast<float>(n);
-      const float slope = std::sqrt(u / (1.0F - u));
-      pattern[i] << slope * std::cos(angle), slope * std::sin(angle);
-    }
-    return pattern;
-  }();
-  return kPattern;
+constexpr int kPattern = 4;  // pixels a side
+
+constexpr int raysOf(MirrorDensity density) {
+  return density == MirrorDensity::kHalf ? 8 : 4;
+}
+
+/// Slopes (microfacet normal against the mean normal) for the places of the pattern: GGX with unit
+/// width, stratified; the widest tail is left out.
+std::array<Eigen::Vector2f, 8> makeLobe(MirrorDensity density) {
+  std::array<Eigen::Vector2f, 8> pattern;
+  const int rays = raysOf(density);
+  for (int n = 0; n < rays; ++n) {
+    const float u = 0.9F * (static_cast<float>(n) + 0.5F) / static_cast<float>(rays);
+    const float angle = 2.39996323F * static_cast<float>(n);
+    const float slope = std::sqrt(u / (1.0F - u));
+    pattern[static_cast<std::size_t>(n)] << slope * std::cos(angle), slope * std::sin(angle);
+  }
+  return pattern;
+}
+
+const Eigen::Vector2f& lobeSlope(MirrorDensity density, int place) {
+  static const std::array<Eigen::Vector2f, 8> kHalf = makeLobe(MirrorDensity::kHalf);
+  static const std::array<Eigen::Vector2f, 8> kQuarter = makeLobe(MirrorDensity::kQuarter);
+  return (density == MirrorDensity::kHalf ? kHalf : kQuarter)[static_cast<std::size_t>(place)];
 }
 
 /// Weights of two 4-pixel means, one after the other.
@@ -47,9 +55,19 @@ void ReflectionBuffer::reset(int w, int h) {
   weights.assign(incoming.size(), 0.0F);
 }
 
+int mirrorPlace(MirrorDensity density, int x, int y) {
+  // Bayer's matrix: its first eight places lie like a chess board's fields, the first four on every
+  // second pixel of every second row.
+  constexpr std::array<int, 16> kBayer{0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
+  const int place = kBayer[static_cast<std::size_t>(y % kPattern * kPattern + x % kPattern)];
+  return place < raysOf(density) ? place : -1;
+}
+
 MirrorRay makeMirrorRay(const LampMap& lamps, const Surface& surface,
-                        const Eigen::Vector3f& direction, float weight, int x, int y) {
+                        const Eigen::Vector3f& direction, float weight, MirrorDensity density,
+                        int place) {
   MirrorRay ray;
+  ray.place = static_cast<std::uint8_t>(place);
   ray.weight = weight;
   ray.from_floor = surface.is_floor;
   // A lone ray towards lamps sparkles on surfaces that are not smooth.
@@ -60,7 +78,7 @@ MirrorRay makeMirrorRay(const LampMap& lamps, const Surface& surface,
     ray.lamp_glow =
         lamps.glow(surface.position, direction + 2.0F * cosine * n, cosine, surface.roughness);
     const float alpha = surface.roughness * surface.roughness;
-    const Eigen::Vector2f& slope = lobePattern()[static_cast<std::size_t>(y % 4 * 4 + x % 4)];
+    const Eigen::Vector2f& slope = lobeSlope(density, place);
     n.x() += alpha * slope.x();
     n.y() += alpha * slope.y();
     n.normalize();
@@ -75,46 +93,59 @@ MirrorRay makeMirrorRay(const LampMap& lamps, const Surface& surface,
   return ray;
 }
 
-void traceMirrorRays(const FrameSetup& setup, RTCScene moving, const MirrorRay* rays, int count,
-                     Radiance& out, ReflectionBuffer& floor) {
+namespace {
+
+/// Traces up to sixteen rays and calls use(ray, hit, radiance) for each.
+template <class Use>
+void tracePacket(const FrameSetup& setup, RTCScene moving, const MirrorRay* rays, int lanes,
+                 const Use& use) {
+  RayPacket packet;
+  packet.clear(kMaskAll);
+  for (int k = 0; k < lanes; ++k) {
+    // The floor's image of lamps comes from their map, without the noise of a few rays.
+    packet.rays.ray.mask[k] = rays[k].lamps_hidden ? kMaskAll & ~kMaskLamp : kMaskAll;
+    packet.set(k, rays[k].origin, rays[k].direction, kFar);
+  }
+  traceBoth(*setup.tracer, moving, packet, true);
+  for (int k = 0; k < lanes; ++k) {
+    const MirrorRay& ray = rays[k];
+    const SurfaceHit hit = hitOf(*setup.tracer, packet, k);
+    if (hit.triangle == kNoTriangle) {
+      use(ray, hit, setup.shader->missed(ray.origin, ray.direction));
+      continue;
+    }
+    const SurfaceHit* hits = &hit;
+    const Eigen::Vector3f* direction = &ray.direction;
+    Surface surface;
+    setup.shader->shade(&hits, &direction, 1, ray.origin, kMirrorSpread, 1, *setup.moment, surface);
+    use(ray, hit, surface.radiance);
+  }
+}
+
+}  // namespace
+
+void traceFloorMirror(const FrameSetup& setup, RTCScene moving, const MirrorRay* rays, int count,
+                      ReflectionBuffer& floor) {
+  const float lamps_height = setup.shader->lamps().height() - kLampRoom;
+  const auto use = [&](const MirrorRay& ray, const SurfaceHit& hit, Eigen::Vector3f radiance) {
+    const float reached = hit.triangle == kNoTriangle ? kFar : hit.t * ray.direction.z();
+    if (reached > lamps_height - ray.origin.z()) {
+      radiance += ray.lamp_glow;
+    }
+    floor.incoming[ray.pixel] << radiance.x(), radiance.y(), radiance.z(), 1.0F;
+  };
   for (int begin = 0; begin < count; begin += kPacket) {
-    RayPacket packet;
-    packet.clear(kMaskAll);
-    const int lanes = std::min(kPacket, count - begin);
-    bool floors_only = true;
-    for (int k = 0; k < lanes; ++k) {
-      floors_only = floors_only && rays[begin + k].from_floor;
-      // The floor's image of lamps comes from their map, without the noise of a few rays.
-      packet.rays.ray.mask[k] = rays[begin + k].lamps_hidden ? kMaskAll & ~kMaskLamp : kMaskAll;
-      packet.set(k, rays[begin + k].origin, rays[begin + k].direction, kFar);
-    }
-    const RTCScene scene = floors_only ? moving : setup.moment->scene.get();
-    traceBoth(*setup.tracer, scene, packet, true);
-    for (int k = 0; k < lanes; ++k) {
-      const MirrorRay& ray = rays[begin + k];
-      const SurfaceHit hit = hitOf(*setup.tracer, packet, k);
-      Eigen::Vector3f radiance = Eigen::Vector3f::Zero();
-      if (hit.triangle != kNoTriangle) {
-        const SurfaceHit* hits = &hit;
-        const Eigen::Vector3f* direction = &ray.direction;
-        Surface surface;
-        setup.shader->shade(&hits, &direction, 1, ray.origin, kMirrorSpread, 1, *setup.moment,
-                            surface);
-        radiance = surface.radiance;
-      } else {
-        radiance = setup.shader->missed(ray.origin, ray.direction);
-      }
-      if (ray.from_floor) {
-        const float reached = hit.triangle == kNoTriangle ? kFar : hit.t * ray.direction.z();
-        if (reached > setup.shader->lamps().height() - ray.origin.z() - kLampRoom) {
-          radiance += ray.lamp_glow;
-        }
-        floor.incoming[ray.pixel] << radiance.x(), radiance.y(), radiance.z(), 1.0F;
-        floor.weights[ray.pixel] = ray.weight;
-      } else {
-        out.pixels[ray.pixel] += ray.weight * radiance;
-      }
-    }
+    tracePacket(setup, moving, rays + begin, std::min(kPacket, count - begin), use);
+  }
+}
+
+void traceMirror(const FrameSetup& setup, const MirrorRay* rays, int count, Radiance& out) {
+  const auto use = [&](const MirrorRay& ray, const SurfaceHit&, const Eigen::Vector3f& radiance) {
+    out.pixels[ray.pixel] += ray.weight * radiance;
+  };
+  for (int begin = 0; begin < count; begin += kPacket) {
+    tracePacket(setup, setup.moment->scene.get(), rays + begin, std::min(kPacket, count - begin),
+                use);
   }
 }
 
@@ -145,7 +176,9 @@ void addFloorReflections(ReflectionBuffer& floor, int threads, Radiance& out) {
         sum += kTent[static_cast<std::size_t>(k + 3)] *
                across[static_cast<std::size_t>(y + k) * width + x];
       }
-      out.pixels[pixel] += floor.weights[pixel] / sum.w() * sum.head<3>();
+      if (sum.w() > 0.0F) {
+        out.pixels[pixel] += floor.weights[pixel] / sum.w() * sum.head<3>();
+      }
     }
   });
 }

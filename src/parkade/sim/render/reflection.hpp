@@ -17,6 +17,7 @@ struct MirrorRay {
   float weight = 0.0F;  ///< reflectance times the share of the pixel; 0: no ray
   std::uint32_t pixel = 0;
   bool from_floor = false;
+  std::uint8_t place = 0;     ///< in the floor's pattern
   bool lamps_hidden = false;  ///< the lamps' light comes otherwise, or not at all
   Eigen::Vector3f lamp_glow = Eigen::Vector3f::Zero();  ///< lamps in the lobe, if in sight
 };
@@ -31,15 +32,29 @@ struct ReflectionBuffer {
   void reset(int w, int h);
 };
 
-/// The mirror ray of a surface. On floors its direction is spread over the glossy lobe by a pattern
-/// that repeats every 4 x 4 pixels: the mean over any such block is an integral over the lobe.
-MirrorRay makeMirrorRay(const LampMap& lamps, const Surface& surface,
-                        const Eigen::Vector3f& direction, float weight, int x, int y);
+/// Which of the 4 x 4 pixels of the pattern send floor mirror rays.
+enum class MirrorDensity : std::uint8_t {
+  kHalf,     ///< 8, like the black fields of a chess board
+  kQuarter,  ///< 4, every second of every second row
+};
 
-/// Traces mirror rays; those of floors go to the buffer, others are added to the picture. moving is
-/// what floors may mirror of the moving objects, or null.
-void traceMirrorRays(const FrameSetup& setup, RTCScene moving, const MirrorRay* rays, int count,
-                     Radiance& out, ReflectionBuffer& floor);
+/// The place of a pixel in the order of those that send a floor mirror ray, or -1.
+int mirrorPlace(MirrorDensity density, int x, int y);
+
+/// The mirror ray of a surface. On floors its direction is spread over the glossy lobe by the place
+/// in a pattern that repeats every 4 x 4 pixels: the mean over any such block is an integral over
+/// the lobe.
+MirrorRay makeMirrorRay(const LampMap& lamps, const Surface& surface,
+                        const Eigen::Vector3f& direction, float weight, MirrorDensity density,
+                        int place);
+
+/// Traces mirror rays of floors into the buffer. moving is what they may meet of the moving
+/// objects, or null. Rays of one place of the pattern run alike and should follow each other.
+void traceFloorMirror(const FrameSetup& setup, RTCScene moving, const MirrorRay* rays, int count,
+                      ReflectionBuffer& floor);
+
+/// Traces mirror rays of other surfaces and adds what they bring to the picture.
+void traceMirror(const FrameSetup& setup, const MirrorRay* rays, int count, Radiance& out);
 
 /// Averages the floor's mirror image over neighbours and adds it to the picture.
 void addFloorReflections(ReflectionBuffer& floor, int threads, Radiance& out);

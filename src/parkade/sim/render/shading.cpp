@@ -11,10 +11,13 @@ namespace {
 
 constexpr float kInvPi = std::numbers::inv_pi_v<float>;
 constexpr int kMaxTaps = 4;
+constexpr int kMaxPoints = 4 * kMaxTaps;  // of one pixel
 constexpr float kSoftness = 2.0F;   // diameter of a sample's footprint over the spacing of samples
 constexpr float kDullFrom = 0.75F;  // roughness above which no mirror image is left
 
-float flickerFactor(const BakedPoint& point, const Moment& moment) {
+/// Of a BakedPoint or ShadeVertex.
+template <class Point>
+float flickerFactor(const Point& point, const Moment& moment) {
   if (point.flicker_lamp == kNoLamp) {
     return 1.0F;
   }
@@ -43,6 +46,16 @@ Shader::Shader(const Scene& scene, const StaticTracer& tracer, const BakedLight&
   textures_.reserve(scene.textures.size());
   for (const Texture& texture : scene.textures) {
     textures_.emplace_back(texture);
+  }
+  vertices_.resize(mesh_.positions.size());
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    const BakedPoint& baked = light.vertices[i];
+    ShadeVertex& vertex = vertices_[i];
+    vertex.lux.head<3>() = baked.lux;
+    vertex.normal.head<3>() = mesh_.normals[i];
+    vertex.uv = mesh_.uvs[i];
+    vertex.flicker_lamp = baked.flicker_lamp;
+    vertex.flicker_share = baked.flicker_share;
   }
   const auto lux = static_cast<float>(scene.target_floor_lux);
   for (const Material& material : scene.materials) {
@@ -98,20 +111,69 @@ Eigen::Vector3f Shader::floorLux(float x, float y, const Moment& moment) const {
   return lux;
 }
 
-Eigen::Vector3f Shader::bakedLux(const RenderTriangle& t, float u, float v,
-                                 const Moment& moment) const {
-  const BakedPoint& a = light_.vertices[t.v[0]];
-  const BakedPoint& b = light_.vertices[t.v[1]];
-  const BakedPoint& c = light_.vertices[t.v[2]];
-  float wa = 1.0F - u - v;
-  float wb = u;
-  float wc = v;
+void Shader::surfaceAt(const SurfaceHit& hit, const RenderTriangle& t, const Moment& moment,
+                       Eigen::Vector3f& normal, Eigen::Vector3f& lux) const {
+  const float w = 1.0F - hit.u - hit.v;
+  if (hit.object >= 0) {
+    const PlacedObject& object = moment.objects[static_cast<std::size_t>(hit.object)];
+    const auto& normals = object.shape->mesh.normals;
+    normal = object.R_world_object *
+             (w * normals[t.v[0]] + hit.u * normals[t.v[1]] + hit.v * normals[t.v[2]]);
+    lux = w * object.vertex_lux[t.v[0]] + hit.u * object.vertex_lux[t.v[1]] +
+          hit.v * object.vertex_lux[t.v[2]];
+    return;
+  }
+  const ShadeVertex& a = vertices_[t.v[0]];
+  const ShadeVertex& b = vertices_[t.v[1]];
+  const ShadeVertex& c = vertices_[t.v[2]];
+  float wa = w;
+  float wb = hit.u;
+  float wc = hit.v;
+  const Eigen::Vector4f n = wa * a.normal + wb * b.normal + wc * c.normal;
   if (!moment.lamp_brightness.empty()) {
     wa *= flickerFactor(a, moment);
     wb *= flickerFactor(b, moment);
     wc *= flickerFactor(c, moment);
   }
-  return wa * a.lux + wb * b.lux + wc * c.lux;
+  const Eigen::Vector4f e = wa * a.lux + wb * b.lux + wc * c.lux;
+  normal = n.head<3>();
+  lux = e.head<3>();
+}
+
+Eigen::Vector2f Shader::uvAt(const SurfaceHit& hit, const RenderTriangle& t,
+                             const RenderMesh& mesh) const {
+  const float w = 1.0F - hit.u - hit.v;
+  if (hit.object < 0) {
+    return w * vertices_[t.v[0]].uv + hit.u * vertices_[t.v[1]].uv + hit.v * vertices_[t.v[2]].uv;
+  }
+  return w * mesh.uvs[t.v[0]] + hit.u * mesh.uvs[t.v[1]] + hit.v * mesh.uvs[t.v[2]];
+}
+
+Eigen::Vector3f Shader::textureAt(const SurfaceHit* const* hits, int count,
+                                  const MipTexture& texture, float spread,
+                                  const Moment& moment) const {
+  const RenderMesh& mesh = meshOf(*hits[0], moment);
+  const bool one_triangle = std::all_of(
+      hits, hits + count, [&](const SurfaceHit* h) { return h->triangle == hits[0]->triangle; });
+  const RenderTriangle& first = mesh.triangles[hits[0]->triangle];
+  const float texels = spread * hits[0]->t * first.texels_per_metre;
+  constexpr float kMagnified = 0.4F;
+  if (count == 1 || (one_triangle && texels < kMagnified)) {
+    // Within one texel the mean of the samples is the sample at their mean.
+    Eigen::Vector2f middle = Eigen::Vector2f::Zero();
+    for (int i = 0; i < count; ++i) {
+      middle += uvAt(*hits[i], first, mesh);
+    }
+    middle /= static_cast<float>(count);
+    return texture.sample(middle.x(), middle.y(), texels);
+  }
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  for (int i = 0; i < count; ++i) {
+    const RenderTriangle& t = mesh.triangles[hits[i]->triangle];
+    const Eigen::Vector2f uv = uvAt(*hits[i], t, mesh);
+    sum += texture.sample(uv.x(), uv.y(), spread * hits[i]->t * t.texels_per_metre);
+  }
+  return sum / static_cast<float>(count);
 }
 
 float Shader::lampBrightness(const Eigen::Vector3f& p, const Moment& moment) const {
@@ -152,29 +214,24 @@ void Shader::shadeFloor(const SurfaceHit* const* hits, const Eigen::Vector3f* co
   const float step_x = step * d.x();
   const float step_y = step * d.y();
   const float start = -0.5F * static_cast<float>(taps - 1);
-  Eigen::Vector3f albedo = Eigen::Vector3f::Zero();
   Eigen::Vector3f middle = Eigen::Vector3f::Zero();
-  float specular = 0.0F;
-  float roughness = 0.0F;
+  std::array<float, kMaxPoints> xs;
+  std::array<float, kMaxPoints> ys;
+  int points = 0;
   for (int i = 0; i < count; ++i) {
     const Eigen::Vector3f p = eye + hits[i]->t * *directions[i];
     middle += p;
-    float x = p.x() + start * step_x;
-    float y = p.y() + start * step_y;
     for (int k = 0; k < taps; ++k) {
-      const FloorSample sample = scene_.floor->sample(x, y, footprint);
-      albedo += sample.albedo;
-      specular += sample.specular;
-      roughness += sample.roughness;
-      x += step_x;
-      y += step_y;
+      const float along = start + static_cast<float>(k);
+      xs[static_cast<std::size_t>(points)] = p.x() + along * step_x;
+      ys[static_cast<std::size_t>(points)] = p.y() + along * step_y;
+      ++points;
     }
   }
-  const float weight = 1.0F / static_cast<float>(taps * count);
-  albedo *= weight;
+  const FloorSample look = scene_.floor->mean(xs.data(), ys.data(), points, footprint);
   out.position = middle / static_cast<float>(count);
-  out.specular = specular * weight;
-  out.roughness = roughness * weight;
+  out.specular = look.specular;
+  out.roughness = look.roughness;
   out.is_floor = true;
   Eigen::Vector3f lux = floorLux(out.position.x(), out.position.y(), moment);
   if (!moment.objects.empty()) {
@@ -183,7 +240,7 @@ void Shader::shadeFloor(const SurfaceHit* const* hits, const Eigen::Vector3f* co
   if (!moment.beams.empty()) {
     lux += moment.beamLux(out.position, out.normal);
   }
-  out.radiance = albedo.cwiseProduct(lux) * kInvPi;
+  out.radiance = look.albedo.cwiseProduct(lux) * kInvPi;
 }
 
 void Shader::shade(const SurfaceHit* const* hits, const Eigen::Vector3f* const* directions,
@@ -193,14 +250,8 @@ void Shader::shade(const SurfaceHit* const* hits, const Eigen::Vector3f* const* 
   const RenderMesh& mesh = meshOf(hit, moment);
   const RenderTriangle& t = mesh.triangles[hit.triangle];
   const ShadeMaterial& material = materials_[t.material];
-  const PlacedObject* object =
-      hit.object < 0 ? nullptr : &moment.objects[static_cast<std::size_t>(hit.object)];
-  const float w = 1.0F - hit.u - hit.v;
-  out.normal =
-      w * mesh.normals[t.v[0]] + hit.u * mesh.normals[t.v[1]] + hit.v * mesh.normals[t.v[2]];
-  if (object != nullptr) {
-    out.normal = object->R_world_object * out.normal;
-  }
+  Eigen::Vector3f lux;
+  surfaceAt(hit, t, moment, out.normal, lux);
   out.normal.normalize();
   if (out.normal.dot(*directions[0]) > 0.0F) {
     out.normal = -out.normal;
@@ -213,13 +264,6 @@ void Shader::shade(const SurfaceHit* const* hits, const Eigen::Vector3f* const* 
   out.specular = material.specular;
   out.roughness = material.roughness;
   out.is_floor = false;
-  Eigen::Vector3f lux;
-  if (object != nullptr) {
-    const auto& vertex_lux = object->vertex_lux;
-    lux = w * vertex_lux[t.v[0]] + hit.u * vertex_lux[t.v[1]] + hit.v * vertex_lux[t.v[2]];
-  } else {
-    lux = bakedLux(t, hit.u, hit.v, moment);
-  }
   if (!moment.beams.empty()) {
     lux += moment.beamLux(out.position, out.normal);
   }
@@ -227,16 +271,8 @@ void Shader::shade(const SurfaceHit* const* hits, const Eigen::Vector3f* const* 
   Eigen::Vector3f emission = material.emission;
   if (material.texture != nullptr && t.texels_per_metre > 0.0F) {
     const float cosine = std::max(std::abs(directions[0]->dot(out.normal)), 0.1F);
-    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-    for (int i = 0; i < count; ++i) {
-      const SurfaceHit& h = *hits[i];
-      const RenderTriangle& ti = mesh.triangles[h.triangle];
-      const Eigen::Vector2f uv = (1.0F - h.u - h.v) * mesh.uvs[ti.v[0]] + h.u * mesh.uvs[ti.v[1]] +
-                                 h.v * mesh.uvs[ti.v[2]];
-      sum += material.texture->sample(uv.x(), uv.y(),
-                                      spread * h.t * ti.texels_per_metre / std::sqrt(cosine));
-    }
-    sum /= static_cast<float>(count);
+    const Eigen::Vector3f sum =
+        textureAt(hits, count, *material.texture, spread / std::sqrt(cosine), moment);
     albedo = albedo.cwiseProduct(sum);
     emission = emission.cwiseProduct(sum);
   }

@@ -36,6 +36,15 @@ struct ShadeMaterial {
   bool is_floor = false;
 };
 
+/// What shading reads of a vertex of the static mesh, in one place: fewer cache misses.
+struct alignas(16) ShadeVertex {
+  Eigen::Vector4f lux = Eigen::Vector4f::Zero();     ///< w: unused
+  Eigen::Vector4f normal = Eigen::Vector4f::Zero();  ///< w: 0
+  Eigen::Vector2f uv = Eigen::Vector2f::Zero();
+  std::uint16_t flicker_lamp = kNoLamp;
+  std::uint16_t flicker_share = 0;  ///< of 65535
+};
+
 /// A surface ready for its final sum.
 struct Surface {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();
@@ -89,8 +98,15 @@ class Shader {
                           : moment.objects[static_cast<std::size_t>(hit.object)].shape->mesh;
   }
   [[nodiscard]] Eigen::Vector3f floorLux(float x, float y, const Moment& moment) const;
-  [[nodiscard]] Eigen::Vector3f bakedLux(const RenderTriangle& t, float u, float v,
-                                         const Moment& moment) const;
+  /// Normal and illuminance at a hit, not unit and not turned towards the viewer.
+  void surfaceAt(const SurfaceHit& hit, const RenderTriangle& t, const Moment& moment,
+                 Eigen::Vector3f& normal, Eigen::Vector3f& lux) const;
+  [[nodiscard]] Eigen::Vector2f uvAt(const SurfaceHit& hit, const RenderTriangle& t,
+                                     const RenderMesh& mesh) const;
+  /// The mean of a texture over hits of one object, each filtered over spread times its distance.
+  [[nodiscard]] Eigen::Vector3f textureAt(const SurfaceHit* const* hits, int count,
+                                          const MipTexture& texture, float spread,
+                                          const Moment& moment) const;
   void shadeFloor(const SurfaceHit* const* hits, const Eigen::Vector3f* const* directions,
                   int count, const Eigen::Vector3f& eye, float spread, int samples,
                   const Moment& moment, Surface& out) const;
@@ -100,6 +116,7 @@ class Shader {
   const RenderMesh& mesh_;
   const BakedLight& light_;
   LampMap lamps_;
+  std::vector<ShadeVertex> vertices_;  ///< of the static mesh
   std::vector<MipTexture> textures_;
   std::vector<ShadeMaterial> materials_;
   Eigen::Vector3f background_;

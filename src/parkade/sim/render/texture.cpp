@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "parkade/core/check.hpp"
+#include "parkade/sim/texel.hpp"
 
 namespace parkade::sim {
 
@@ -66,27 +67,25 @@ Eigen::Vector3f MipTexture::sample(float u, float v, float texels) const {
   const int wanted = texels > 1.0F ? static_cast<int>(fastLog2(texels) + 0.5F) : 0;
   const Level& level =
       levels_[static_cast<std::size_t>(std::min(wanted, static_cast<int>(levels_.size()) - 1))];
-  const float x = (u - std::floor(u)) * level.width - 0.5F;
-  const float y = (v - std::floor(v)) * level.height - 0.5F;
-  const float fx = std::floor(x);
-  const float fy = std::floor(y);
+  const float x = (u - static_cast<float>(floorToInt(u))) * static_cast<float>(level.width) - 0.5F;
+  const float y = (v - static_cast<float>(floorToInt(v))) * static_cast<float>(level.height) - 0.5F;
+  const int left = floorToInt(x);
+  const int top = floorToInt(y);
   const auto wrap = [](int i, int n) { return i < 0 ? i + n : i >= n ? i - n : i; };
-  const int x0 = wrap(static_cast<int>(fx), level.width);
-  const int y0 = wrap(static_cast<int>(fy), level.height);
+  const int x0 = wrap(left, level.width);
+  const int y0 = wrap(top, level.height);
   const int x1 = wrap(x0 + 1, level.width);
   const int y1 = wrap(y0 + 1, level.height);
-  const float ax = x - fx;
-  const float ay = y - fy;
+  const float ax = x - static_cast<float>(left);
+  const float ay = y - static_cast<float>(top);
   const auto* row0 = level.texels.data() + static_cast<std::size_t>(y0) * level.width;
   const auto* row1 = level.texels.data() + static_cast<std::size_t>(y1) * level.width;
-  Eigen::Vector3f out;
-  for (int c = 0; c < 3; ++c) {
-    const auto k = static_cast<std::size_t>(c);
-    const float top = (1 - ax) * row0[x0][k] + ax * row0[x1][k];
-    const float bottom = (1 - ax) * row1[x0][k] + ax * row1[x1][k];
-    out[c] = ((1 - ay) * top + ay * bottom) * (1.0F / 65535.0F);
-  }
-  return out;
+  const Eigen::Vector4f above =
+      (1.0F - ax) * texelOf(row0[x0].data()) + ax * texelOf(row0[x1].data());
+  const Eigen::Vector4f below =
+      (1.0F - ax) * texelOf(row1[x0].data()) + ax * texelOf(row1[x1].data());
+  const Eigen::Vector4f mean = (1.0F / 65535.0F) * ((1.0F - ay) * above + ay * below);
+  return mean.head<3>();
 }
 
 Eigen::Vector3f MipTexture::mean() const {

@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -15,12 +14,6 @@ namespace parkade::sim {
 /// Linear light (0 to 1) of an sRGB byte, and back (IEC 61966-2-1).
 float linearOfSrgb(std::uint8_t value);
 float srgbOfLinear(float linear);
-
-/// Base-2 logarithm of a positive number, straight between powers of two (within 0.09).
-inline float fastLog2(float x) {
-  const auto bits = std::bit_cast<std::uint32_t>(x);
-  return static_cast<float>(bits) * (1.0F / 8388608.0F) - 127.0F;
-}
 
 /// A texture in linear light with its mip levels, each half the size of the one before.
 class MipTexture {

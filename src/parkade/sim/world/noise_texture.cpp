@@ -7,17 +7,12 @@
 
 #include "parkade/core/check.hpp"
 #include "parkade/core/random.hpp"
+#include "parkade/sim/texel.hpp"
 
 namespace parkade::sim {
 namespace {
 
 constexpr float kScale = 127.0F;
-
-// Without SSE 4.1, std::floor is a call; this is two instructions. For |x| < 2^31.
-int floorToInt(float x) {
-  const int truncated = static_cast<int>(x);
-  return truncated - (x < static_cast<float>(truncated) ? 1 : 0);
-}
 
 float smooth(float t) {
   return t * t * (3.0F - 2.0F * t);
@@ -52,13 +47,9 @@ GreyTexture::GreyTexture(const std::vector<float>& values, int width, int height
 }
 
 float GreyTexture::sample(float u, float v, float footprint) const {
-  std::size_t index = 0;
-  float scale = 1.0F;
-  for (float texel = 1.4142F; texel < footprint && index + 1 < levels_.size(); texel *= 2.0F) {
-    ++index;
-    scale *= 0.5F;
-  }
-  const Level& level = levels_[index];
+  const int index = std::min(mipLevelFor(footprint), static_cast<int>(levels_.size()) - 1);
+  const float scale = 1.0F / static_cast<float>(1 << index);
+  const Level& level = levels_[static_cast<std::size_t>(index)];
   const float x = u * scale - 0.5F;
   const float y = v * scale - 0.5F;
   const int x0 = floorToInt(x);

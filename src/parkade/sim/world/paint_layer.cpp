@@ -8,11 +8,13 @@
 #include <utility>
 
 #include "parkade/core/check.hpp"
+#include "parkade/sim/texel.hpp"
 #include "parkade/sim/world/coverage.hpp"
 
 namespace parkade::sim {
 
-PaintLayer::PaintLayer(const Eigen::Vector2d& min, const Eigen::Vector2d& max) : origin_(min) {
+PaintLayer::PaintLayer(const Eigen::Vector2d& min, const Eigen::Vector2d& max)
+    : origin_(min), corner_(min.cast<float>()) {
   const Eigen::Vector2d tiles = (max - min) / (kTile * kCell);
   tiles_x_ = std::max(1, static_cast<int>(std::ceil(tiles.x())));
   tiles_y_ = std::max(1, static_cast<int>(std::ceil(tiles.y())));
@@ -101,22 +103,19 @@ const PaintLayer::Tile* PaintLayer::tileAt(int tile_x, int tile_y) const {
       .get();
 }
 
-PaintSample PaintLayer::sample(float x, float y, float footprint) const {
-  PaintSample result;
-  int level = 0;
-  for (float cell = 1.4142F * kCell; cell < footprint && level + 1 < kLevels; cell *= 2.0F) ++level;
+void PaintLayer::add(float x, float y, int level, PaintSample& sum) const {
   const int bits = 7 - level;  // of a tile's size at this level
   static_assert(kTile == 1 << 7);
   const float scale = 1.0F / (kCell * static_cast<float>(1 << level));
-  const float u = (x - static_cast<float>(origin_.x())) * scale - 0.5F;
-  const float v = (y - static_cast<float>(origin_.y())) * scale - 0.5F;
+  const float u = (x - corner_.x()) * scale - 0.5F;
+  const float v = (y - corner_.y()) * scale - 0.5F;
   // Outside the floor, truncation instead of rounding down finds no tile either.
   const int ix = static_cast<int>(u) - (u < 0.0F ? 1 : 0);
   const int iy = static_cast<int>(v) - (v < 0.0F ? 1 : 0);
   const int mask = (1 << bits) - 1;
   const Tile* tile = tileAt(ix >> bits, iy >> bits);
   const bool inside = (ix & mask) != mask && (iy & mask) != mask;
-  if (tile == nullptr && inside) return result;
+  if (tile == nullptr && inside) return;
   const float fx = u - static_cast<float>(ix);
   const float fy = v - static_cast<float>(iy);
   const float weights[4] = {(1.0F - fx) * (1.0F - fy), fx * (1.0F - fy), (1.0F - fx) * fy, fx * fy};
@@ -129,14 +128,28 @@ PaintSample PaintLayer::sample(float x, float y, float footprint) const {
         here->levels[level][static_cast<std::size_t>(((cy & mask) << bits) + (cx & mask))];
     if (cell.coverage == 0) continue;
     const float share = weights[k] * static_cast<float>(cell.coverage) * (1.0F / 255.0F);
-    result.coverage += share;
-    result.albedo += share * albedo_[cell.paint];
-    if (result.paint == cell.paint) {
-      result.main_coverage += share;
-    } else if (share > result.main_coverage) {
-      result.paint = cell.paint;
-      result.main_coverage = share;
+    sum.coverage += share;
+    sum.albedo += share * albedo_[cell.paint];
+    if (sum.paint == cell.paint) {
+      sum.main_coverage += share;
+    } else if (share > sum.main_coverage) {
+      sum.paint = cell.paint;
+      sum.main_coverage = share;
     }
+  }
+}
+
+PaintSample PaintLayer::mean(const float* x, const float* y, int count, float footprint) const {
+  PaintSample result;
+  const int level = std::min(mipLevelFor(footprint / kCell), kLevels - 1);
+  for (int i = 0; i < count; ++i) {
+    add(x[i], y[i], level, result);
+  }
+  if (count > 1 && result.coverage > 0.0F) {
+    const float share = 1.0F / static_cast<float>(count);
+    result.coverage *= share;
+    result.main_coverage *= share;
+    result.albedo *= share;
   }
   return result;
 }

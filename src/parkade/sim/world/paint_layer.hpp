@@ -10,7 +10,7 @@
 
 namespace parkade::sim {
 
-/// What covers the floor at one place, averaged over a footprint: up to the shares of paints.
+/// What covers the floor at one or several places, averaged over a footprint.
 struct PaintSample {
   float coverage = 0.0F;                             ///< of all paints together
   std::uint8_t paint = 0;                            ///< the one that covers most
@@ -36,7 +36,8 @@ class PaintLayer {
   /// Makes the mip-maps; after the last paint() and before the first sample().
   void finish(std::vector<Eigen::Vector3f> albedo_of_paint);
 
-  [[nodiscard]] PaintSample sample(float x, float y, float footprint) const;
+  /// The mean over count places, each averaged over the footprint.
+  [[nodiscard]] PaintSample mean(const float* x, const float* y, int count, float footprint) const;
 
  private:
   struct Cell {
@@ -48,9 +49,11 @@ class PaintLayer {
   };
   /// Lays a share of paint over a cell.
   static void cover(Cell& cell, float share, std::uint8_t id);
+  void add(float x, float y, int level, PaintSample& sum) const;
   [[nodiscard]] const Tile* tileAt(int tile_x, int tile_y) const;
 
   Eigen::Vector2d origin_;
+  Eigen::Vector2f corner_;  ///< the origin
   int tiles_x_ = 0;
   int tiles_y_ = 0;
   std::vector<std::unique_ptr<Tile>> tiles_;

@@ -5,6 +5,7 @@ set(WORLD_SOURCES
     world/agent_motion.cpp
     world/agents.cpp
     garage.cpp
+    scene.cpp
     world/aisle_graph.cpp
     world/aisle_paint.cpp
     world/arrows.cpp
@@ -12,6 +13,7 @@ set(WORLD_SOURCES
     world/coverage.cpp
     world/fittings.cpp
     world/floor_build.cpp
+    world/floor_maps.cpp
     world/floor_surface.cpp
     world/garage_json.cpp
     world/generate.cpp
@@ -26,6 +28,7 @@ set(WORLD_SOURCES
     world/pillars.cpp
     world/plan_image.cpp
     world/polygon.cpp
+    world/quad_texture.cpp
     world/scene_builder.cpp
     world/services.cpp
     world/shell.cpp

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/sim/scene.hpp"
+
+namespace parkade::sim {
+
+FloorSample FloorSurface::mean(const float* x, const float* y, int count, float footprint) const {
+  FloorSample sum = sample(x[0], y[0], footprint);
+  for (int i = 1; i < count; ++i) {
+    const FloorSample next = sample(x[i], y[i], footprint);
+    sum.albedo += next.albedo;
+    sum.specular += next.specular;
+    sum.roughness += next.roughness;
+  }
+  const float share = 1.0F / static_cast<float>(count);
+  sum.albedo *= share;
+  sum.specular *= share;
+  sum.roughness *= share;
+  return sum;
+}
+
+}  // namespace parkade::sim

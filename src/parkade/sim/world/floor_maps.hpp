@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include "parkade/sim/world/floor_surface.hpp"
+#include "parkade/sim/world/noise_texture.hpp"
+#include "parkade/sim/world/quad_texture.hpp"
+
+namespace parkade::sim {
+
+inline constexpr float kFloorMapCell = 0.04F;  ///< m: of the maps over the whole floor
+inline constexpr float kCloudTexel = 0.05F;    ///< m: clouds of wear and damp
+
+/// What a value of makeFloorMaps means.
+enum FloorChannel : int {
+  kCloudChannel,  ///< lighter and darker clouds, -1 to 1
+  kDirtChannel,   ///< darkening, 0 to 1: tyre marks along the ways of cars, oil, stains
+  kZoneChannel,   ///< number of FloorLook::zones (0: none) over 127
+};
+
+/// What varies slowly over a floor between two corners, one texel per cell, texel (0, 0) at min.
+QuadTexture makeFloorMaps(const Eigen::Vector2d& min, const Eigen::Vector2d& max,
+                          const FloorLook& look, const GreyTexture& clouds);
+
+}  // namespace parkade::sim
