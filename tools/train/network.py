@@ -33,7 +33,9 @@ class UNet(nn.Module):
         pairs = list(zip(widths[:-1], widths[1:]))[::-1]
         self.narrow = nn.ModuleList([nn.Conv2d(low, high, 1) for high, low in pairs])
         self.up = nn.ModuleList([ConvBlock(high, high) for high, _ in pairs])
-        self.head = nn.Conv2d(widths[0], 4 * num_classes, 1)
+        # Four pixels' classes need more than the narrow features of the finest level.
+        self.up[-1] = ConvBlock(widths[0], 2 * widths[0])
+        self.head = nn.Conv2d(2 * widths[0], 4 * num_classes, 1)
 
     def forward(self, x):
         """Logits of half size, 4 x classes channels."""

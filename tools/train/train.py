@@ -10,6 +10,7 @@ with the weights of another run. Samples that appear during training are taken i
 ends in 3 are kept for validation.
 """
 import argparse
+import multiprocessing
 import os
 import sys
 import time
@@ -58,12 +59,15 @@ class SegmentationLoss(torch.autograd.Function):
     DICE = 0.7
 
     @staticmethod
-    def forward(context, logits, labels, weight):
+    def forward(context, logits, labels, weight, row):
+        """row: of the 2 x 2 block, 0 or 1; the other one has its turn in other steps."""
         n, channels, height, width = logits.shape
         classes = channels // 4
-        p = logits.to(memory_format=torch.contiguous_format, copy=True).view(n, classes, -1)
-        # In the order of the logits: position in the 2 x 2 block, then place.
-        y = labels.view(n, height, 2, width, 2).permute(0, 2, 4, 1, 3).reshape(n, -1).long()
+        # Class, row of the block, column of the block, place.
+        p = logits.view(n, classes, 2, 2, height, width)[:, :, row]
+        p = p.to(memory_format=torch.contiguous_format, copy=True).view(n, classes, -1)
+        y = labels.view(n, height, 2, width, 2)[:, :, row].permute(0, 3, 1, 2)
+        y = y.reshape(n, -1).long()
         known = (y != IGNORE).float()
         y = torch.where(y == IGNORE, torch.zeros_like(y), y)
         p.sub_(p.amax(1, keepdim=True)).exp_()
@@ -87,21 +91,40 @@ class SegmentationLoss(torch.autograd.Function):
         at_truth = b[y] * p_true * known - w
         p.mul_(a[None, :, None] * known[:, None] + base[:, None])
         p.scatter_add_(1, y[:, None], at_truth[:, None])
-        context.save_for_backward(p.view(n, channels, height, width))
+        context.save_for_backward(p)
+        context.shape, context.row = logits.shape, row
         return entropy + dice
 
     @staticmethod
     def backward(context, gradient):
-        return context.saved_tensors[0].mul_(gradient), None, None
+        n, channels, height, width = context.shape
+        whole = torch.zeros(n, channels // 4, 2, 2, height, width)
+        part = context.saved_tensors[0].view(n, channels // 4, 2, height, width)
+        whole[:, :, context.row] = part * gradient
+        return whole.view(context.shape), None, None, None
 
 
 def class_weights(pixels):
     share = pixels / max(pixels.sum(), 1)
     weight = 1.0 / np.sqrt(np.maximum(share, 1e-5))
     weight = np.where(pixels > 0, weight, 0.0)
-    # Of the mean 1 over pixels, and no class more than ten times another.
-    weight = np.clip(weight, weight.max() / 12.0, None)
+    # Mean 1 over pixels. Crops favour rare classes already: no class above four times another.
+    weight = np.clip(weight, weight.max() / 4.0, None)
     return torch.tensor(weight / (weight * share).sum(), dtype=torch.float32)
+
+
+def keep_making(queue, data, network, seed, batch, size):
+    """In a process of its own: batches without end, and how often the classes occur."""
+    torch.set_num_threads(1)
+    samples = Samples(data, network, lambda garage: not is_validation(garage))
+    rng = np.random.default_rng(seed)
+    refreshed = time.time()
+    while True:
+        if time.time() - refreshed > 120:
+            samples.refresh()
+            refreshed = time.time()
+        queue.put((*make_batch(samples, rng, batch, size, network), samples.pixels,
+                   len(samples.images)))
 
 
 def validate(network, samples, limit):
@@ -157,7 +180,6 @@ def main():
     classes = NETWORKS[a.network]["classes"]
     size = NETWORKS[a.network]["size"] if a.network == "raw" else (a.crop, a.crop)
 
-    train = Samples(a.data, a.network, lambda garage: not is_validation(garage))
     test = Samples(a.data, a.network, is_validation)
     network = make_network(a.network, len(classes)).to(memory_format=torch.channels_last)
     optimiser = torch.optim.AdamW(network.parameters(), lr=a.rate, weight_decay=1e-3)
@@ -170,7 +192,11 @@ def main():
         optimiser.load_state_dict(state["optimiser"])
         average.state, step, spent = state["average"], state["step"], state["spent"]
     elif a.warm_start:
-        network.load_state_dict(torch.load(a.warm_start)["average"])
+        before = torch.load(a.warm_start)["average"]
+        now = network.state_dict()
+        network.load_state_dict({key: before[key] if key in before and
+                                 before[key].shape == value.shape else value
+                                 for key, value in now.items()})
         average = Average(network, 0.998)
     log = open(os.path.join(a.out, "log.txt"), "a", buffering=1)
 
@@ -178,9 +204,12 @@ def main():
         log.write(text + "\n")
         print(text, flush=True)
 
-    say(f"{len(train.images)} training and {len(test.images)} validation pictures, "
+    say(f"{len(test.images)} validation pictures, "
         f"{sum(p.numel() for p in network.parameters())} parameters, from step {step}")
-    rng = np.random.default_rng(a.seed * 1000003 + step)
+    queue = multiprocessing.Queue(4)
+    multiprocessing.Process(
+        target=keep_making, daemon=True,
+        args=(queue, a.data, a.network, a.seed * 1000003 + step, a.batch, size)).start()
     budget, last, losses = 60.0 * a.minutes, time.time(), []
     saved = validated = spent
     while spent < budget:
@@ -188,9 +217,9 @@ def main():
         rate = a.rate * min(1.0, (step + 1) / 200) * (0.5 * (1 + np.cos(np.pi * done)) + 0.005)
         for group in optimiser.param_groups:
             group["lr"] = rate
-        images, labels = make_batch(train, rng, a.batch, size, a.network)
+        images, labels, pixels, pictures = queue.get()
         loss = SegmentationLoss.apply(network(to_input(images)), torch.as_tensor(labels),
-                                      class_weights(train.pixels))
+                                      class_weights(pixels), step % 2)
         optimiser.zero_grad(set_to_none=True)
         loss.backward()
         torch.nn.utils.clip_grad_norm_(network.parameters(), 5.0)
@@ -206,10 +235,9 @@ def main():
             save(path, {"network": network.state_dict(), "average": average.state, "step": step,
                         "optimiser": optimiser.state_dict(), "spent": spent,
                         "name": a.network, "classes": classes})
-            train.refresh()
             test.refresh()
             say(f"step {step}  {spent / 60:.1f} min  loss {np.mean(losses):.3f}  rate {rate:.5f}  "
-                f"{len(train.images)} pictures")
+                f"{pictures} pictures")
             losses = []
         if spent - validated > 480 or spent >= budget:
             validated = spent
