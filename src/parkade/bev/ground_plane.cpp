@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/bev/ground_plane.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace parkade {
+namespace {
+
+constexpr int kIterations = 8;
+constexpr double kMaxLandmarkSigma = 0.08;  // m: less certain points say nothing
+constexpr int kMinObservations = 3;
+// The plane of the frame before holds for the next one but for slope changes and the body's motion.
+constexpr double kLastTiltSigma = 0.01;     // rad
+constexpr double kLastHeightSigma = 0.015;  // m
+
+struct FloorPoint {
+  Eigen::Vector3d p_vehicle;
+  double sigma;
+};
+
+// Cauchy's weight: what stands on the floor must not lift it.
+double robustWeight(double whitened) {
+  constexpr double kScale = 1.5;
+  return 1.0 / (1.0 + whitened * whitened / (kScale * kScale));
+}
+
+}  // namespace
+
+void GroundPlaneEstimator::reset() {
+  points_.clear();
+  has_plane_ = false;
+}
+
+void GroundPlaneEstimator::remember(const PoseEstimate& pose,
+                                    const std::vector<Landmark>& landmarks) {
+  const Eigen::Vector3d up = pose.T_odom_vehicle.rotation() * Eigen::Vector3d::UnitZ();
+  for (const Landmark& landmark : landmarks) {
+    if (landmark.num_observations < kMinObservations) continue;
+    const double sigma = std::sqrt(std::max(0.0, up.dot(landmark.covariance * up)));
+    if (sigma > kMaxLandmarkSigma) continue;
+    points_[landmark.id] = {landmark.p_odom, sigma, pose.t_ns};
+  }
+  const double far = options_.max_distance_m + 1.0;
+  for (auto it = points_.begin(); it != points_.end();) {
+    const bool old = toSeconds(pose.t_ns - it->second.last_seen_ns) > options_.keep_s;
+    const bool away = (it->second.p_odom - pose.T_odom_vehicle.translation()).norm() > far;
+    it = old || away ? points_.erase(it) : std::next(it);
+  }
+}
+
+GroundPlaneEstimate GroundPlaneEstimator::update(const PoseEstimate& pose,
+                                                 const std::vector<Landmark>& landmarks) {
+  remember(pose, landmarks);
+  const SE3 T_vehicle_odom = pose.T_odom_vehicle.inverse();
+
+  // What is expected of z = a x + b y + c in the vehicle frame: the body at rest on a floor, and
+  // the floor of the frame before, seen from the present pose.
+  const double tilt = options_.tilt_prior_deg * std::numbers::pi / 180.0;
+  Eigen::Matrix3d H_prior = Eigen::Vector3d(1.0 / (tilt * tilt), 1.0 / (tilt * tilt),
+                                            std::pow(options_.height_prior_m, -2.0))
+                                .asDiagonal();
+  Eigen::Vector3d b_prior = Eigen::Vector3d::Zero();
+  if (has_plane_) {
+    const Eigen::Vector3d normal =
+        T_vehicle_odom.rotation() *
+        Eigen::Vector3d(-plane_odom_.x(), -plane_odom_.y(), 1.0).normalized();
+    const Eigen::Vector3d foot = T_vehicle_odom * Eigen::Vector3d(0.0, 0.0, plane_odom_.z());
+    const Eigen::Vector3d last(-normal.x() / normal.z(), -normal.y() / normal.z(),
+                               normal.dot(foot) / normal.z());
+    const Eigen::Vector3d information(std::pow(kLastTiltSigma, -2.0),
+                                      std::pow(kLastTiltSigma, -2.0),
+                                      std::pow(kLastHeightSigma, -2.0));
+    H_prior += information.asDiagonal();
+    b_prior += information.cwiseProduct(last);
+  }
+  const Eigen::Vector3d expected = H_prior.ldlt().solve(b_prior);
+
+  // Ordered by id, so that sums come out the same whatever the map's order.
+  std::vector<std::pair<std::uint64_t, FloorPoint>> near;
+  for (const auto& [id, point] : points_) {
+    const Eigen::Vector3d p = T_vehicle_odom * point.p_odom;
+    if (p.head<2>().norm() > options_.max_distance_m) continue;
+    const double off = p.z() - expected.dot(Eigen::Vector3d(p.x(), p.y(), 1.0));
+    if (std::abs(off) > options_.max_off_plane_m) continue;
+    near.push_back({id, {p, std::hypot(point.sigma, options_.point_sigma_m)}});
+  }
+  std::sort(near.begin(), near.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+
+  Eigen::Vector3d plane = expected;
+  Eigen::Matrix3d H = H_prior;
+  int used = 0;
+  for (int i = 0; i < kIterations; ++i) {
+    H = H_prior;
+    Eigen::Vector3d b = b_prior;
+    used = 0;
+    for (const auto& [id, point] : near) {
+      const Eigen::Vector3d row(point.p_vehicle.x(), point.p_vehicle.y(), 1.0);
+      const double whitened = (point.p_vehicle.z() - plane.dot(row)) / point.sigma;
+      const double weight = robustWeight(whitened) / (point.sigma * point.sigma);
+      H += weight * row * row.transpose();
+      b += weight * point.p_vehicle.z() * row;
+      if (std::abs(whitened) < 2.5) ++used;
+    }
+    plane = H.ldlt().solve(b);
+  }
+
+  const Eigen::Matrix3d covariance = H.inverse();
+  const double scale = 1.0 / std::sqrt(1.0 + plane.head<2>().squaredNorm());
+  GroundPlaneEstimate estimate;
+  // Nose down lifts the floor ahead, leaning right lifts it on the right.
+  estimate.attitude.pitch = std::atan(plane.x());
+  estimate.attitude.roll = std::atan(-plane.y() * std::cos(estimate.attitude.pitch));
+  estimate.attitude.height = -plane.z() * scale;
+  estimate.sigma_pitch = std::sqrt(covariance(0, 0));
+  estimate.sigma_roll = std::sqrt(covariance(1, 1));
+  estimate.sigma_height = std::sqrt(covariance(2, 2));
+  estimate.points = used;
+
+  const Eigen::Vector3d normal =
+      pose.T_odom_vehicle.rotation() * Eigen::Vector3d(-plane.x(), -plane.y(), 1.0);
+  const Eigen::Vector3d foot = pose.T_odom_vehicle * Eigen::Vector3d(0.0, 0.0, plane.z());
+  plane_odom_ = {-normal.x() / normal.z(), -normal.y() / normal.z(), normal.dot(foot) / normal.z()};
+  has_plane_ = true;
+  return estimate;
+}
+
+}  // namespace parkade
