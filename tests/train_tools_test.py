@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Parkade authors
+# SPDX-License-Identifier: Apache-2.0
+"""Tests tools/train: its classes are the program's, its written-out gradient is the true one."""
+
+import pathlib
+import re
+import sys
+import unittest
+
+SOURCE = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(SOURCE / "tools" / "train"))
+
+try:
+    import torch
+    from torch.nn import functional as F
+except ImportError:
+    torch = None
+
+
+class ClassesTest(unittest.TestCase):
+    def test_classes_are_those_of_the_program(self):
+        from classes import SEMANTIC_CLASSES, NETWORKS, label_table
+
+        text = (SOURCE / "src/parkade/types/semantic_class.hpp").read_text(encoding="utf-8")
+        names = re.findall(r'"([a-z_]+)"', text[text.index("kSemanticClassNames =") :])
+        self.assertEqual(SEMANTIC_CLASSES, names)
+        for network, spec in NETWORKS.items():
+            table = label_table(network)
+            for name in spec["classes"]:
+                value = SEMANTIC_CLASSES.index(name)
+                self.assertEqual(table[value], spec["classes"].index(name))
+            self.assertEqual(table[255], 255)
+        bev = NETWORKS["bev"]["classes"]
+        marker = SEMANTIC_CLASSES.index("zone_marker")
+        self.assertEqual(label_table("bev")[marker], bev.index("pillar"))
+
+
+@unittest.skipIf(torch is None, "python3-torch is not installed")
+class LossTest(unittest.TestCase):
+    def reference(self, logits, labels, weight, row):
+        """The same by automatic differentiation, on the rows that count."""
+        from classes import IGNORE
+
+        logits = F.pixel_shuffle(logits, 2)[:, :, row::2]
+        labels = labels.long()[:, row::2]
+        entropy = F.cross_entropy(logits, labels, weight=weight, ignore_index=IGNORE)
+        known = labels != IGNORE
+        p = torch.softmax(logits, 1)
+        target = torch.where(known, labels, torch.zeros_like(labels))
+        hit = torch.gather(p, 1, target[:, None])[:, 0] * known
+        n = logits.shape[1]
+        overlap = torch.zeros(n).scatter_add(0, target.flatten(), hit.flatten())
+        truth = torch.zeros(n).scatter_add(0, target.flatten(), known.flatten().float())
+        mass = (p * known[:, None]).sum((0, 2, 3))
+        dice = 1.0 - (2.0 * overlap + 1.0) / (truth + mass + 1.0)
+        return entropy + 0.7 * dice[truth > 20].mean()
+
+    def test_gradient(self):
+        from train import SegmentationLoss
+
+        torch.manual_seed(1)
+        logits = torch.randn(2, 20, 16, 16, requires_grad=True)
+        labels = torch.randint(0, 5, (2, 32, 32)).byte()
+        labels[0, :7] = 255
+        weight = torch.rand(5) + 0.5
+        for row in (0, 1):
+            expected = self.reference(logits, labels, weight, row)
+            (slope,) = torch.autograd.grad(expected, logits)
+            found = SegmentationLoss.apply(logits, labels, weight, row)
+            (found_slope,) = torch.autograd.grad(found, logits)
+            self.assertAlmostEqual(float(expected), float(found), places=5)
+            self.assertGreater(float(slope.abs().max()), 1e-4)
+            self.assertLess(float((slope - found_slope).abs().max()), 1e-7)
+
+    def test_folding_batch_norm_changes_nothing(self):
+        from network import fold_batch_norm, make_network
+
+        torch.manual_seed(2)
+        network = make_network("raw", 7)
+        picture = torch.randn(2, 3, 64, 96)
+        with torch.no_grad():
+            for _ in range(3):
+                network(picture)  # gathers statistics
+            network.eval()
+            before = network(picture)
+            after = fold_batch_norm(network)(picture)
+        self.assertEqual(list(before.shape), [2, 28, 32, 48])
+        self.assertLess(float((before - after).abs().max()), 1e-4)
+
+
+if __name__ == "__main__":
+    unittest.main()
