@@ -98,6 +98,36 @@ std::vector<SE2> blockDrive(double length, int laps, double step) {
   return poses;
 }
 
+// The straight line through noisy points of one painted line.
+void addSegment(const std::vector<Vector2d>& points, const PlanLine& line, double sigma,
+                std::vector<LineSegment>& segments) {
+  if (points.size() < 5) return;
+  const Vector2d chord = points.back() - points.front();
+  const double length = chord.norm();
+  if (length < 0.5) return;
+  Vector2d mean = Vector2d::Zero();
+  for (const Vector2d& p : points) mean += p / static_cast<double>(points.size());
+  // Offset across the chord, as a linear function along it.
+  const Vector2d along = chord / length;
+  const Vector2d across(-along.y(), along.x());
+  double xx = 0.0;
+  double xy = 0.0;
+  for (const Vector2d& p : points) {
+    const double x = along.dot(p - mean);
+    xx += x * x;
+    xy += x * across.dot(p - mean);
+  }
+  const Vector2d direction = (along + across * (xy / xx)).normalized();
+  LineSegment segment;
+  segment.begin = mean - 0.5 * length * direction;
+  segment.end = mean + 0.5 * length * direction;
+  segment.width = line.width;
+  segment.sigma_heading = std::max(1e-4, sigma) / std::sqrt(xx);
+  segment.sigma_offset = std::max(1e-3, sigma) / std::sqrt(static_cast<double>(points.size()));
+  segment.semantic_class = line.semantic_class;
+  segments.push_back(segment);
+}
+
 PlanObserver::PlanObserver(const Plan& plan, const ObserverNoise& noise)
     : plan_(plan), noise_(noise) {
   rasterise();
@@ -190,6 +220,7 @@ SemanticFrame PlanObserver::observe(TimeNs t_ns, const SE2& T_world_vehicle, Ran
               along * std::clamp(along.dot(T_world_vehicle * frame.labels.geometry.center - line.a),
                                  0.0, length)))
       continue;
+    std::vector<Vector2d> run;  // of points without outliers, for the segment
     constexpr double kSpacing = 0.15;
     for (double s = random.uniform(0.0, kSpacing); s < length; s += kSpacing) {
       const Vector2d p_world = line.a + s * along;
@@ -204,11 +235,13 @@ SemanticFrame PlanObserver::observe(TimeNs t_ns, const SE2& T_world_vehicle, Ran
           std::max(0.005, noise_.line_sigma),
           noise_.attitude_sigma * point.p_level.norm() / kCameraHeight * point.normal.dot(ray));
       point.semantic_class = line.semantic_class;
+      run.push_back(point.p_level);
       if (random.chance(noise_.outliers)) {
         point.p_level += Vector2d(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
       }
       frame.line_points.push_back(point);
     }
+    addSegment(run, line, noise_.line_sigma, frame.line_segments);
   }
   for (const PlanSlot& slot : plan_.slots) {
     if (!seen(slot.corners[0]) || !seen(slot.corners[1]) || random.chance(noise_.dropout)) continue;

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "parkade/core/options.hpp"
+#include "parkade/types/semantic_features.hpp"
+
+namespace parkade {
+
+struct CompassOptions {
+  bool enable = true;
+  double min_length_m = 1.0;
+  double paint_sigma_deg = 0.2;
+  double window_deg = 3.0;
+  double min_share = 0.5;
+  double reference_m = 10.0;
+  double sigma_deg = 0.3;
+
+  void visit(OptionVisitor& v) {
+    v.field("enable", enable, "Take the rows of a garage for parallel or square to each other.");
+    v.field("min_length_m", min_length_m, "m", "Shorter pieces of line have no direction.", 0.1,
+            20.0);
+    v.field("paint_sigma_deg", paint_sigma_deg, "deg", "How straight and square lines are painted.",
+            0.0, 5.0);
+    v.field("window_deg", window_deg, "deg", "Lines farther off the garage's axes are others.", 0.1,
+            20.0);
+    v.field("min_share", min_share, "ratio",
+            "Share of the lines in view that must lie along the axes.", 0.0, 1.0);
+    v.field("reference_m", reference_m, "m", "Way over which the axes are learned.", 0.5, 100.0);
+    v.field("sigma_deg", sigma_deg, "deg",
+            "Error of one heading by the axes; those of one aisle repeat theirs.", 0.01, 10.0);
+  }
+};
+
+/// Heading from the garage's axes: painted lines of a garage run along two square directions, which
+/// the first metres of a drive show. Later frames read their heading off them, modulo 90 degrees.
+/// Where lines are slanted, or fit no axis, it says nothing. docs/math/fusion.md.
+class Compass {
+ public:
+  explicit Compass(const CompassOptions& options) : options_(options) {}
+
+  /// Enters a frame seen at the expected heading, at this way travelled. Gives the heading that the
+  /// axes tell, once they are known; nothing where too few lines lie along them.
+  std::optional<double> read(const SemanticFrame& frame, double expected_heading,
+                             double travelled_m);
+
+ private:
+  CompassOptions options_;
+  bool learned_ = false;
+  double begin_m_ = -1.0;
+  double axis_ = 0.0;  // world direction, modulo 90 degrees
+  // While learning: sums over lines of exp(4 i direction), weighted.
+  double cos_sum_ = 0.0;
+  double sin_sum_ = 0.0;
+  double weight_sum_ = 0.0;
+};
+
+}  // namespace parkade

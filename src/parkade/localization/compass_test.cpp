@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/localization/compass.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "parkade/core/random.hpp"
+#include "parkade/geometry/so3.hpp"
+
+namespace parkade {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+
+SemanticFrame frameOf(const std::vector<double>& directions_deg, double heading) {
+  SemanticFrame frame;
+  for (const double direction : directions_deg) {
+    const double angle = direction * kDegree - heading;
+    LineSegment segment;
+    segment.end = 4.0 * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    segment.sigma_heading = 0.1 * kDegree;
+    frame.line_segments.push_back(segment);
+  }
+  return frame;
+}
+
+TEST(Compass, ReadsTheHeadingOffAxesThatItLearned) {
+  Compass compass({});
+  for (double way = 0.0; way < 10.0; way += 1.0) {
+    EXPECT_FALSE(compass.read(frameOf({20, 110, 20}, 0.1), 0.1, way));
+  }
+  // Later the car looks elsewhere, and its odometry is off by a degree.
+  for (const double heading : {0.3, 2.0, -2.5}) {
+    const auto found = compass.read(frameOf({20, 110, 200}, heading), heading + kDegree, 20.0);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(wrapAngle(*found - heading), 0.0, 1e-9);
+  }
+  EXPECT_FALSE(compass.read(frameOf({50, 140}, 0.0), 0.0, 30.0)) << "a slanted row";
+  EXPECT_FALSE(compass.read(SemanticFrame(), 0.0, 31.0));
+  // One slanted line among straight ones does not bend the heading.
+  const auto found = compass.read(frameOf({20, 20, 110, 55}, 0.0), 0.5 * kDegree, 32.0);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(*found, 0.0, 1e-9);
+}
+
+TEST(Compass, DoesNotLearnFromSlantedRowsOrWhenOff) {
+  Compass compass({});
+  for (double way = 0.0; way < 30.0; way += 1.0) {
+    EXPECT_FALSE(compass.read(frameOf({0, 60, 60, 0}, 0.0), 0.0, way));
+  }
+  CompassOptions options;
+  options.enable = false;
+  Compass off(options);
+  for (double way = 0.0; way < 30.0; way += 1.0) {
+    EXPECT_FALSE(off.read(frameOf({0, 90}, 0.0), 0.0, way));
+  }
+}
+
+}  // namespace
+}  // namespace parkade

@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "parkade/core/options.hpp"
+#include "parkade/fusion/odometry.hpp"
+#include "parkade/localization/compass.hpp"
+#include "parkade/localization/loop_closure.hpp"
+#include "parkade/localization/registration.hpp"
+#include "parkade/mapping/global_map.hpp"
+#include "parkade/mapping/local_map.hpp"
+#include "parkade/mapping/object_registry.hpp"
+#include "parkade/mapping/parking_map.hpp"
+#include "parkade/mapping/slot_registry.hpp"
+#include "parkade/types/pose_estimate.hpp"
+#include "parkade/types/semantic_features.hpp"
+
+namespace parkade {
+
+struct SubmapOptions {
+  double length_m = 5.0;
+  double rotation_deg = 60.0;
+  double frame_distance_m = 0.25;
+  double min_age_m = 3.0;
+  double revisit_age_m = 30.0;
+  double register_distance_m = 1.0;
+  double sigma_m = 0.01;
+  double sigma_deg = 0.05;
+  double gate_probability = 0.999;
+  double height_sigma_m = 0.03;
+  int max_anchors = 160;
+
+  void visit(OptionVisitor& v) {
+    v.field("length_m", length_m, "m", "A submap holds this much of the drive.", 1.0, 50.0);
+    v.field("rotation_deg", rotation_deg, "deg", "Or ends after such a turn.", 5.0, 360.0);
+    v.field("frame_distance_m", frame_distance_m, "m", "Between frames that enter a submap.", 0.0,
+            5.0);
+    v.field("min_age_m", min_age_m, "m",
+            "Frames register to submaps that ended this far back, which they did not build.", 0.0,
+            100.0);
+    v.field("revisit_age_m", revisit_age_m, "m", "A submap that ended earlier is a revisit.", 5.0,
+            1000.0);
+    v.field("register_distance_m", register_distance_m, "m", "Between frames that are registered.",
+            0.1, 50.0);
+    v.field("sigma_m", sigma_m, "m", "Error of a submap's features that all its frames share.", 0.0,
+            1.0);
+    v.field("sigma_deg", sigma_deg, "deg", "The same of their heading.", 0.0, 5.0);
+    v.field("gate_probability", gate_probability, "probability",
+            "Registrations that are kept, of those that are right.", 0.5, 0.999999);
+    v.field("height_sigma_m", height_sigma_m, "m",
+            "How well heights agree where the car comes back to a place.", 0.001, 1.0);
+    v.field("max_anchors", max_anchors, "count",
+            "Past poses that are corrected; older ones stay as they are.", 4, 2000);
+  }
+};
+
+struct FusedMapperOptions {
+  OdometryNoiseOptions odometry;
+  SubmapOptions submaps;
+  RegistrationOptions registration;
+  LoopOptions loop;
+  CompassOptions compass;
+  LocalMapOptions local_map;
+  GlobalMapOptions global_map;
+  SlotRegistryOptions slots;
+  ObjectRegistryOptions objects;
+
+  void visit(OptionVisitor& v) {
+    v.group("odometry", odometry);
+    v.group("submaps", submaps);
+    v.group("registration", registration);
+    v.group("loop", loop);
+    v.group("compass", compass);
+    v.group("local_map", local_map);
+    v.group("global_map", global_map);
+    v.group("slots", slots);
+    v.group("objects", objects);
+  }
+};
+
+struct FusedMapperStatistics {
+  int registrations = 0;  ///< tried on submaps of this stretch
+  int accepted = 0;
+  int revisits = 0;  ///< tried on submaps of an earlier one
+  int loops = 0;     ///< of them, accepted
+  int refused_by_gate = 0;
+  int headings = 0;  ///< read off the garage's axes, and taken
+  int anchors = 0;
+};
+
+/// Fused localisation and mapping: odometry predicts, the registration of each frame's semantic
+/// features to submaps of earlier stretches corrects, and all that was seen enters the map, which
+/// follows the corrections. Eats poses and features, never images. The same calls give the same
+/// bytes. Not thread-safe.
+class FusedMapper {
+ public:
+  /// viewpoints: the cameras' places in the vehicle frame.
+  FusedMapper(const FusedMapperOptions& options, std::vector<Eigen::Vector3d> viewpoints);
+  ~FusedMapper();
+
+  /// The odometry's pose of a frame set. Gives the fused pose, T_world_vehicle in its place of
+  /// T_odom_vehicle, with the fused covariance; the odometry's own while it has not started.
+  PoseEstimate addOdometry(const PoseEstimate& odometry);
+  /// The features of the frame set that was last given to addOdometry(). Gives its pose anew.
+  PoseEstimate addSemantics(const SemanticFrame& frame);
+
+  /// The map as it is; finish() first, at the end of a run.
+  [[nodiscard]] ParkingMap map(const std::string& name) const;
+  void finish();
+  [[nodiscard]] const LocalMap& localMap() const;
+  [[nodiscard]] const LayeredGrid& globalGrid() const;
+  [[nodiscard]] const FusedMapperStatistics& statistics() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace parkade

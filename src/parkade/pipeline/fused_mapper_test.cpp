@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/pipeline/fused_mapper.hpp"
+
+#include <gmock/gmock.h>
+
+#include <set>
+
+#include "parkade/mapping/map_check.hpp"
+#include "parkade/mapping/synthetic_plan.hpp"
+
+namespace parkade {
+namespace {
+
+using testing::makePlan;
+using testing::ObserverNoise;
+using testing::Plan;
+using testing::PlanObserver;
+using testing::PlanSlot;
+
+constexpr double kDegree = M_PI / 180.0;
+
+struct DriveOptions {
+  double scale_error = 0.004;  // the odometry's metres are too long
+  double yaw_per_m = 0.02;     // deg/m, constant
+  double noise_m = 0.004;      // per square root of a metre
+  double noise_deg = 0.02;
+  int laps = 2;
+  bool labels = false;
+  double blind_from = 1e9;  // no features between these ways, m
+  double blind_to = 1e9;
+};
+
+struct DriveResult {
+  double odometry_rmse = 0.0;
+  double fused_rmse = 0.0;
+  double fused_yaw_rmse = 0.0;
+  double fused_worst = 0.0;
+  double nees = 0.0;
+  FusedMapperStatistics statistics;
+  ParkingMap map;
+  SE2 T_world_map;
+};
+
+ObserverNoise usualNoise() {
+  ObserverNoise noise;
+  noise.line_sigma = 0.015;
+  noise.corner_sigma = 0.03;
+  noise.object_sigma = 0.05;
+  noise.attitude_sigma = 0.1 * kDegree;
+  noise.dropout = 0.2;
+  noise.outliers = 0.05;
+  noise.label_noise = 0.02;
+  return noise;
+}
+
+DriveResult drive(const Plan& plan, const DriveOptions& options, std::uint64_t seed) {
+  const PlanObserver observer(plan, usualNoise());
+  FusedMapper mapper({}, {});
+  Random random(seed);
+  constexpr double kStep = 0.25;
+  const std::vector<SE2> poses = testing::blockDrive(60.0, options.laps, kStep);
+  const SE2 T_start = poses.front();
+  SE2 odometry;
+  DriveResult result;
+  result.T_world_map = T_start;
+  double way = 0.0;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const TimeNs t_ns = 100'000'000LL * static_cast<TimeNs>(k + 1);
+    if (k > 0) {
+      const Eigen::Vector3d d = (poses[k - 1].inverse() * poses[k]).log();
+      const double root = std::sqrt(kStep);
+      odometry =
+          odometry *
+          SE2::exp({d.x() * (1.0 + options.scale_error) + options.noise_m * root * random.normal(),
+                    d.y() + options.noise_m * root * random.normal(),
+                    d.z() + kDegree * (options.yaw_per_m * kStep +
+                                       options.noise_deg * root * random.normal())});
+      way += kStep;
+    }
+    PoseEstimate vio;
+    vio.t_ns = t_ns;
+    vio.T_odom_vehicle = odometry.toSE3();
+    vio.health = Health::kTracking;
+    PoseEstimate fused = mapper.addOdometry(vio);
+    if (way < options.blind_from || way > options.blind_to) {
+      fused = mapper.addSemantics(observer.observe(t_ns, poses[k], random, options.labels));
+    }
+    const SE2 truth = T_start.inverse() * poses[k];
+    const SE2 estimate = SE2::fromSE3(fused.T_odom_vehicle);
+    const double error = (estimate.translation() - truth.translation()).norm();
+    result.fused_rmse += error * error / static_cast<double>(poses.size());
+    result.fused_worst = std::max(result.fused_worst, error);
+    result.odometry_rmse += (odometry.translation() - truth.translation()).squaredNorm() /
+                            static_cast<double>(poses.size());
+    const double yaw = wrapAngle(estimate.angle() - truth.angle());
+    result.fused_yaw_rmse += yaw * yaw / static_cast<double>(poses.size());
+    if (k + 1 == poses.size()) {
+      const Eigen::Vector3d e = (estimate.inverse() * truth).log();
+      const Eigen::Matrix2d P = fused.covariance.topLeftCorner<2, 2>();
+      result.nees = e.head<2>().dot(P.inverse() * e.head<2>());
+    }
+  }
+  mapper.finish();
+  result.fused_rmse = std::sqrt(result.fused_rmse);
+  result.odometry_rmse = std::sqrt(result.odometry_rmse);
+  result.fused_yaw_rmse = std::sqrt(result.fused_yaw_rmse);
+  result.statistics = mapper.statistics();
+  result.map = mapper.map("synthetic");
+  return result;
+}
+
+TEST(FusedMapper, IsMuchBetterThanItsOdometryAndHonest) {
+  double fused = 0.0;
+  double odometry = 0.0;
+  double nees = 0.0;
+  constexpr int kSeeds = 3;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    DriveOptions options;
+    Random random(seed);
+    options.scale_error = random.uniform(-0.005, 0.005);
+    options.yaw_per_m = random.uniform(-0.02, 0.02);
+    const DriveResult r = drive(makePlan(2, 60.0, 0.6, seed), options, seed);
+    const FusedMapperStatistics& n = r.statistics;
+    std::printf("seed %d: odometry %.3f m, fused %.3f m (worst %.3f, yaw %.3f deg), NEES %.2f\n",
+                static_cast<int>(seed), r.odometry_rmse, r.fused_rmse, r.fused_worst,
+                r.fused_yaw_rmse / kDegree, r.nees);
+    std::printf("  %d of %d registrations, %d of %d revisits, %d headings, %d gated\n", n.accepted,
+                n.registrations, n.loops, n.revisits, n.headings, n.refused_by_gate);
+    EXPECT_LE(r.fused_rmse, r.odometry_rmse) << seed;
+    EXPECT_GT(r.statistics.loops, 5) << seed;
+    fused += r.fused_rmse / kSeeds;
+    odometry += r.odometry_rmse / kSeeds;
+    nees += r.nees / kSeeds;
+  }
+  EXPECT_LT(fused, 0.4 * odometry);
+  EXPECT_LT(nees, 2.0 * 3.0);
+}
+
+TEST(FusedMapper, MapHasEverySlotOnceAndFollowsTheCorrections) {
+  const Plan plan = makePlan(2, 60.0, 0.6, 3);
+  DriveOptions options;
+  options.labels = true;
+  options.laps = 1;
+  options.scale_error = 0.002;
+  options.yaw_per_m = 0.005;
+  const DriveResult r = drive(plan, options, 3);
+  EXPECT_TRUE(findFaults(r.map).empty());
+  std::set<const PlanSlot*> found;
+  std::vector<double> errors;
+  for (const MapSlot& slot : r.map.slots) {
+    const PlanSlot* best = nullptr;
+    double distance = 1.0;
+    for (const PlanSlot& truth : plan.slots) {
+      const double d = 0.5 * ((r.T_world_map * slot.corners[0] - truth.corners[0]).norm() +
+                              (r.T_world_map * slot.corners[1] - truth.corners[1]).norm());
+      if (d >= distance) continue;
+      distance = d;
+      best = &truth;
+    }
+    ASSERT_NE(best, nullptr);
+    EXPECT_TRUE(found.insert(best).second) << best->number;
+    errors.push_back(distance);
+  }
+  ASSERT_GT(errors.size(), 40U);
+  std::sort(errors.begin(), errors.end());
+  std::printf("%zu slots, corner error median %.3f m, worst %.3f m\n", errors.size(),
+              errors[errors.size() / 2], errors.back());
+  EXPECT_LT(errors[errors.size() / 2], 0.15);
+  EXPECT_TRUE(r.map.grid.bounds().has_value());
+}
+
+TEST(FusedMapper, SecondsWithoutFeaturesAreSurvived) {
+  DriveOptions options;
+  options.blind_from = 60.0;
+  options.blind_to = 90.0;
+  const DriveResult r = drive(makePlan(2, 60.0, 0.6, 4), options, 4);
+  EXPECT_LE(r.fused_rmse, r.odometry_rmse);
+  EXPECT_GT(r.statistics.loops, 5);
+}
+
+TEST(FusedMapper, SameCallsGiveTheSameBytes) {
+  DriveOptions options;
+  options.laps = 1;
+  const Plan plan = makePlan(2, 60.0, 0.6, 5);
+  const DriveResult a = drive(plan, options, 5);
+  const DriveResult b = drive(plan, options, 5);
+  EXPECT_EQ(a.fused_rmse, b.fused_rmse);
+  EXPECT_TRUE(a.map.slots == b.map.slots);
+  EXPECT_TRUE(a.map.objects == b.map.objects);
+}
+
+}  // namespace
+}  // namespace parkade
