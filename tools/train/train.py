@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Trains a segmentation network on samples of make_data.py, on the processor.
 
-    tools/train/train.py --data DATA --network bev --out RUN --minutes 60
+    tools/train/train.py --data DATA --network bev --out RUN --steps 10000
 
 Writes RUN/state.pt every few minutes: the same command goes on from there. --warm-start FILE begins
 with the weights of another run. Samples that appear during training are taken in. Garages whose seed
@@ -166,7 +166,7 @@ def main():
     parser.add_argument("--data", required=True)
     parser.add_argument("--network", choices=list(NETWORKS), required=True)
     parser.add_argument("--out", required=True)
-    parser.add_argument("--minutes", type=float, default=60.0, help="length of the training [60]")
+    parser.add_argument("--steps", type=int, default=10000, help="length of the training [10000]")
     parser.add_argument("--batch", type=int, default=6)
     parser.add_argument("--crop", type=int, default=256, help="side of a crop of bev, px [256]")
     parser.add_argument("--rate", type=float, default=2e-3, help="highest learning rate [0.002]")
@@ -210,10 +210,10 @@ def main():
     multiprocessing.Process(
         target=keep_making, daemon=True,
         args=(queue, a.data, a.network, a.seed * 1000003 + step, a.batch, size)).start()
-    budget, last, losses = 60.0 * a.minutes, time.time(), []
+    last, losses = time.time(), []
     saved = validated = spent
-    while spent < budget:
-        done = spent / budget
+    while step < a.steps:
+        done = step / a.steps
         rate = a.rate * min(1.0, (step + 1) / 200) * (0.5 * (1 + np.cos(np.pi * done)) + 0.005)
         for group in optimiser.param_groups:
             group["lr"] = rate
@@ -230,7 +230,7 @@ def main():
         now = time.time()
         spent += now - last
         last = now
-        if spent - saved > 120 or spent >= budget:
+        if spent - saved > 120 or step == a.steps:
             saved = spent
             save(path, {"network": network.state_dict(), "average": average.state, "step": step,
                         "optimiser": optimiser.state_dict(), "spent": spent,
@@ -239,11 +239,11 @@ def main():
             say(f"step {step}  {spent / 60:.1f} min  loss {np.mean(losses):.3f}  rate {rate:.5f}  "
                 f"{pictures} pictures")
             losses = []
-        if spent - validated > 480 or spent >= budget:
+        if spent - validated > 900 or step == a.steps:
             validated = spent
             mean = make_network(a.network, len(classes)).to(memory_format=torch.channels_last)
             mean.load_state_dict(average.state)
-            iou = validate(mean, test, 60 if spent < budget else 100000)
+            iou = validate(mean, test, 60 if step < a.steps else 100000)
             say(f"step {step}  mean IoU {np.nanmean(iou):.3f}  {table(classes, iou)}")
             last = time.time()
     return 0
