@@ -22,7 +22,7 @@ constexpr float kLampGap = 0.15F;    // m: what is this close to a lamp casts no
 constexpr float kSkin = 0.01F;       // m: shadow rays start this far off the surface
 
 int samplesAt(float distance) {
-  return distance < 4.0F ? 4 : distance < 8.0F ? 3 : 2;
+  return distance < 4.0F ? 4 : distance < 8.0F ? 2 : 1;
 }
 
 float uniformOf(std::uint64_t bits) {

@@ -17,7 +17,7 @@ namespace parkade::sim {
 struct BakeOptions {
   double floor_cell = 0.1;      ///< m
   double indirect_cell = 0.25;  ///< m
-  int gather_rays = 48;
+  int gather_rays = 32;
   int bounces = 3;
   void visit(OptionVisitor& v) {
     v.field("floor_cell", floor_cell, "m", "Cell of the floor's map of direct light.", 0.02, 1.0);

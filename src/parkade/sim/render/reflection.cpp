@@ -13,7 +13,9 @@ namespace parkade::sim {
 namespace {
 
 constexpr float kFar = 1.0e4F;
-constexpr float kSmooth = 0.2F;         // roughness
+constexpr float kCoatBlur = 0.2F;       // roughness: a lone ray per pixel must not sparkle
+constexpr float kSteepest = 0.3F;       // slope down to which a coat's image of lamps widens
+constexpr float kFloorNear = 5e-4F;     // m: closer than other rays start, or walls leak
 constexpr float kLampRoom = 0.4F;       // m: what hangs this far below the lamps hides none
 constexpr float kMirrorSpread = 0.01F;  // rad: mirror images of textures are a little soft
 
@@ -70,8 +72,6 @@ MirrorRay makeMirrorRay(const LampMap& lamps, const Surface& surface,
   ray.place = static_cast<std::uint8_t>(place);
   ray.weight = weight;
   ray.from_floor = surface.is_floor;
-  // A lone ray towards lamps sparkles on surfaces that are not smooth.
-  ray.lamps_hidden = surface.is_floor || surface.roughness > kSmooth;
   Eigen::Vector3f n = surface.normal;
   if (surface.is_floor) {
     const float cosine = -direction.dot(n);
@@ -89,36 +89,45 @@ MirrorRay makeMirrorRay(const LampMap& lamps, const Surface& surface,
     ray.direction += (0.01F - rise) * surface.normal;
     ray.direction.normalize();
   }
+  if (!surface.is_floor) {
+    ray.lamp_glow =
+        lamps.glow(surface.position, ray.direction, std::max(ray.direction.z(), kSteepest),
+                   std::max(surface.roughness, kCoatBlur));
+  }
   ray.origin = surface.position + 0.002F * surface.normal;
   return ray;
 }
 
 namespace {
 
-/// Traces up to sixteen rays and calls use(ray, hit, radiance) for each.
+/// Traces up to sixteen rays and calls use(ray, radiance) for each. Lamps are too small for a few
+/// rays: their image comes from their map, where a ray gets as far as they are high.
 template <class Use>
-void tracePacket(const FrameSetup& setup, RTCScene moving, const MirrorRay* rays, int lanes,
-                 const Use& use) {
+void tracePacket(const FrameSetup& setup, RTCScene moving, float near_limit, const MirrorRay* rays,
+                 int lanes, const Use& use) {
   RayPacket packet;
-  packet.clear(kMaskAll);
+  packet.clear(kMaskAll & ~kMaskLamp);
   for (int k = 0; k < lanes; ++k) {
-    // The floor's image of lamps comes from their map, without the noise of a few rays.
-    packet.rays.ray.mask[k] = rays[k].lamps_hidden ? kMaskAll & ~kMaskLamp : kMaskAll;
     packet.set(k, rays[k].origin, rays[k].direction, kFar);
+    packet.rays.ray.tnear[k] = near_limit;
   }
   traceBoth(*setup.tracer, moving, packet, true);
+  const float lamps_height = setup.shader->lamps().height() - kLampRoom;
   for (int k = 0; k < lanes; ++k) {
     const MirrorRay& ray = rays[k];
     const SurfaceHit hit = hitOf(*setup.tracer, packet, k);
     if (hit.triangle == kNoTriangle) {
-      use(ray, hit, setup.shader->missed(ray.origin, ray.direction));
+      use(ray, setup.shader->missed(ray.origin, ray.direction));
       continue;
     }
     const SurfaceHit* hits = &hit;
     const Eigen::Vector3f* direction = &ray.direction;
     Surface surface;
     setup.shader->shade(&hits, &direction, 1, ray.origin, kMirrorSpread, 1, *setup.moment, surface);
-    use(ray, hit, surface.radiance);
+    if (hit.t * ray.direction.z() > lamps_height - ray.origin.z()) {
+      surface.radiance += ray.lamp_glow;
+    }
+    use(ray, surface.radiance);
   }
 }
 
@@ -126,26 +135,21 @@ void tracePacket(const FrameSetup& setup, RTCScene moving, const MirrorRay* rays
 
 void traceFloorMirror(const FrameSetup& setup, RTCScene moving, const MirrorRay* rays, int count,
                       ReflectionBuffer& floor) {
-  const float lamps_height = setup.shader->lamps().height() - kLampRoom;
-  const auto use = [&](const MirrorRay& ray, const SurfaceHit& hit, Eigen::Vector3f radiance) {
-    const float reached = hit.triangle == kNoTriangle ? kFar : hit.t * ray.direction.z();
-    if (reached > lamps_height - ray.origin.z()) {
-      radiance += ray.lamp_glow;
-    }
+  const auto use = [&](const MirrorRay& ray, const Eigen::Vector3f& radiance) {
     floor.incoming[ray.pixel] << radiance.x(), radiance.y(), radiance.z(), 1.0F;
   };
   for (int begin = 0; begin < count; begin += kPacket) {
-    tracePacket(setup, moving, rays + begin, std::min(kPacket, count - begin), use);
+    tracePacket(setup, moving, kFloorNear, rays + begin, std::min(kPacket, count - begin), use);
   }
 }
 
 void traceMirror(const FrameSetup& setup, const MirrorRay* rays, int count, Radiance& out) {
-  const auto use = [&](const MirrorRay& ray, const SurfaceHit&, const Eigen::Vector3f& radiance) {
+  const auto use = [&](const MirrorRay& ray, const Eigen::Vector3f& radiance) {
     out.pixels[ray.pixel] += ray.weight * radiance;
   };
   for (int begin = 0; begin < count; begin += kPacket) {
-    tracePacket(setup, setup.moment->scene.get(), rays + begin, std::min(kPacket, count - begin),
-                use);
+    tracePacket(setup, setup.moment->scene.get(), kNear, rays + begin,
+                std::min(kPacket, count - begin), use);
   }
 }
 

@@ -18,7 +18,6 @@ struct MirrorRay {
   std::uint32_t pixel = 0;
   bool from_floor = false;
   std::uint8_t place = 0;     ///< in the floor's pattern
-  bool lamps_hidden = false;  ///< the lamps' light comes otherwise, or not at all
   Eigen::Vector3f lamp_glow = Eigen::Vector3f::Zero();  ///< lamps in the lobe, if in sight
 };
 

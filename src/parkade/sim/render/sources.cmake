@@ -4,6 +4,9 @@ find_package(embree 3.13 REQUIRED GLOBAL)
 find_package(TBB REQUIRED GLOBAL)
 list(APPEND SIM_PRIVATE_DEPS embree TBB::tbb opencv_core)
 set(RENDER_SOURCES
+    render/bake_bounces.cpp
+    render/bake_places.cpp
+    render/bake_probes.cpp
     render/direct_light.cpp
     render/embree.cpp
     render/frame.cpp
@@ -28,6 +31,8 @@ set(RENDER_SOURCES
 set_source_files_properties(${RENDER_SOURCES} PROPERTIES
                             COMPILE_OPTIONS "-ffp-contract=off;-fno-math-errno;-fno-trapping-math")
 set(RENDER_TESTS
+    render/garage_exactness_test.cpp
     render/geometry_exactness_test.cpp
+    render/reflection_test.cpp
     render/renderer_test.cpp
     render/sensor_model_test.cpp)

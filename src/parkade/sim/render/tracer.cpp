@@ -7,10 +7,6 @@
 #include "parkade/core/check.hpp"
 
 namespace parkade::sim {
-namespace {
-constexpr float kNear = 0.02F;  // m
-}  // namespace
-
 void RayPacket::clear(unsigned mask) {
   std::fill_n(valid, kPacket, 0);
   std::fill_n(rays.ray.tnear, kPacket, kNear);

@@ -12,6 +12,7 @@
 namespace parkade::sim {
 
 inline constexpr int kPacket = 16;
+inline constexpr float kNear = 0.02F;  ///< m: rays start this far from their origin
 inline constexpr std::uint32_t kNoTriangle = 0xffffffffU;
 
 /// Sixteen rays and what they hit. Lanes with valid 0 are not traced.
