@@ -3,6 +3,7 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,7 @@ class VioEstimator::Impl {
   StartTrial tryStart(std::vector<NavState> states, const ImuBias& bias, StartPrior prior);
   [[nodiscard]] std::vector<NavState> withSpeed(const std::vector<NavState>& states,
                                                 double speed) const;
+  [[nodiscard]] std::optional<double> wheelSpeed() const;
   void enterWindow(const std::vector<NavState>& states, std::size_t first, const ImuBias& bias,
                    const StartPrior& prior);
   void restart(const std::string& reason);

@@ -119,10 +119,13 @@ bool VioEstimator::Impl::startInMotion() {
       Eigen::Vector3d::Constant(options_.start_up.bias_accel_sigma);
   const bool late = span >= options_.start_up.max_span_s;
   StartTrial best = tryStart(alignment.states, alignment.bias, prior);
-  if (!best.sharp() && late) {
-    // Even motion hardly tells its scale from few images, and noise then shrinks the linear
-    // solution: other speeds along its direction are tried, and the most plausible is kept.
-    for (const double speed : kTrialSpeeds) {
+  std::vector<double> speeds;
+  // Even motion hardly tells its scale from few images, and noise then shrinks the linear
+  // solution: other speeds along its direction are tried, and the most plausible is kept.
+  if (late) speeds.assign(std::begin(kTrialSpeeds), std::end(kTrialSpeeds));
+  if (const std::optional<double> wheels = wheelSpeed()) speeds.push_back(*wheels);
+  if (!best.sharp()) {
+    for (const double speed : speeds) {
       StartTrial trial = tryStart(withSpeed(alignment.states, speed), alignment.bias, prior);
       if (trial.fits() && (!best.fits() || trial.penalty() < best.penalty())) {
         best = std::move(trial);
@@ -149,6 +152,15 @@ bool VioEstimator::Impl::startInMotion() {
   window_.start.frame_id = -1;
   features_.clear();
   return false;
+}
+
+std::optional<double> VioEstimator::Impl::wheelSpeed() const {
+  WindowFrame frame;
+  frame.t_ns = start_frames_.front().t_ns;
+  frame.gyro = readings_.at(frame.t_ns).gyro;
+  addBodyVelocity(frame);
+  if (frame.body_velocity_sigma.x() <= 0.0) return std::nullopt;
+  return std::abs(frame.body_velocity.x());
 }
 
 // The window that grows from given states of the start's frames.
@@ -227,6 +239,7 @@ void VioEstimator::Impl::enterWindow(const std::vector<NavState>& states, std::s
     frame.state = states[i];
     frame.bias = bias;
     frame.gyro = readings_.at(frame.t_ns).gyro;
+    addBodyVelocity(frame);
     if (i > 0) setImu(frame, start_frames_[first + i - 1].t_ns, bias);
     // Every second frame of the start is a keyframe; the rest leave as recent frames do.
     frame.keyframe = i % 2 == 0 && i + 1 < states.size();
