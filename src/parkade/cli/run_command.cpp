@@ -60,18 +60,20 @@ Status configure(const RunArguments& arguments, PipelineOptions& options) {
 }
 
 Status runSequence(const RunArguments& arguments) {
-  if (arguments.method != "vis") {
-    return Error{fmt::format("--method {}: not available yet in this build; use --method vis",
+  if (arguments.method != "vis" && arguments.method != "fused") {
+    return Error{fmt::format("--method {}: not available yet in this build; use fused or vis",
                              arguments.method)};
   }
   PipelineOptions options;
   if (Status status = configure(arguments, options); !status) return status;
   SourceRequest request = arguments.source;
   request.decode_threads = arguments.threads > 1 ? 1 : 0;
+  request.gray = arguments.method == "vis";  // networks want colour
   Result<OpenedSource> opened = openSource(request);
   if (!opened) return opened.error();
   if (Status status = prepareRunFolder(arguments.out, arguments.force); !status) return status;
-  auto run = MappingRun::create(opened->rig, options, arguments.threads);
+  const RunMethod method = arguments.method == "fused" ? RunMethod::kFused : RunMethod::kVis;
+  auto run = MappingRun::create(opened->rig, options, arguments.threads, method);
   if (!run) return run.error();
 
   HealthLog health;
@@ -96,6 +98,7 @@ Status runSequence(const RunArguments& arguments) {
   description.threads = arguments.threads;
   Status written = writeRunFiles(arguments.out, description, **run, health, arguments.with_final);
   if (!written) return written;
+  if (Status saved = writeMap(arguments.out, arguments.source.spec, **run); !saved) return saved;
   const RunSummary& summary = (*run)->summary();
   fmt::print("{}", timingTable(summary));
   fmt::print("{} frame sets, {} poses, {:.0f} tracks per frame set; wrote {}\n", summary.frame_sets,

@@ -15,6 +15,8 @@
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
 #include "parkade/io/trajectory_io.hpp"
+#include "parkade/mapping/map_export.hpp"
+#include "parkade/mapping/map_file.hpp"
 #include "parkade/tracking/draw_tracks.hpp"
 
 namespace parkade::cli {
@@ -22,9 +24,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 7> kRunFiles = {
-    "trajectory.tum", "trajectory_vio.tum", "trajectory_final.tum", "health.csv",
-    "timing.json",    "metrics.json",       "config.yaml"};
+constexpr std::array<const char*, 8> kRunFiles = {
+    "map.db",     "trajectory.tum", "trajectory_vio.tum", "trajectory_final.tum",
+    "health.csv", "timing.json",    "metrics.json",       "config.yaml"};
 constexpr const char* kConfigHeading = "# Effective configuration of 'parkade run'";
 
 bool isRunFolder(const fs::path& folder) {
@@ -177,10 +179,11 @@ void DebugImages::onTracks(const TracksEvent& event) {
 Status writeRunFiles(const std::string& folder, const RunDescription& description,
                      const MappingRun& run, const HealthLog& health, bool with_final) {
   const auto path = [&](const char* name) { return joinPath(folder, name); };
-  for (const char* name : {"trajectory.tum", "trajectory_vio.tum"}) {
-    Status status = writeTrajectory(path(name), run.trajectory(), TrajectoryFormat::kTum);
-    if (!status) return status;
-  }
+  Status written =
+      writeTrajectory(path("trajectory.tum"), run.trajectory(), TrajectoryFormat::kTum);
+  if (!written) return written;
+  written = writeTrajectory(path("trajectory_vio.tum"), run.odometry(), TrajectoryFormat::kTum);
+  if (!written) return written;
   if (with_final) {
     Status status = writeTrajectory(path("trajectory_final.tum"), run.finalTrajectory(),
                                     TrajectoryFormat::kTum);
@@ -201,6 +204,26 @@ Status writeRunFiles(const std::string& folder, const RunDescription& descriptio
     if (!status) return status;
   }
   return {};
+}
+
+Status writeMap(const std::string& folder, const std::string& name, const MappingRun& run) {
+  if (run.mapper() == nullptr) return {};
+  ParkingMap map = run.mapper()->map(name);
+  Result<MapFile> file = MapFile::open(joinPath(folder, "map.db"));
+  if (!file) return file.error();
+  if (Status saved = file->save(map); !saved) return saved;
+  const std::string exports = joinPath(folder, "map");
+  if (Status made = makeFolders(exports); !made) return made;
+  for (const GridLayer layer : kGridLayers) {
+    if (Status status = exportNav2(map, layer, exports); !status) return status;
+  }
+  if (Status s = exportGeoJson(map, joinPath(exports, "map.geojson")); !s) return s;
+  if (Status s = exportLanelet2(map, joinPath(exports, "map.osm")); !s) return s;
+  const Result<cv::Mat> picture = drawMap(map);
+  if (!picture) return picture.error();
+  ImageEncoding png;
+  png.png = true;
+  return writeImage(joinPath(exports, "map.png"), *picture, png);
 }
 
 std::string timingTable(const RunSummary& summary) {

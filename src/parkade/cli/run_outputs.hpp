@@ -60,6 +60,9 @@ struct RunDescription {
 Status writeRunFiles(const std::string& folder, const RunDescription& description,
                      const MappingRun& run, const HealthLog& health, bool with_final);
 
+/// Writes map.db and the exports map/, where the run made a map.
+Status writeMap(const std::string& folder, const std::string& name, const MappingRun& run);
+
 /// The table of stage timings, as printed at the end.
 std::string timingTable(const RunSummary& summary);
 

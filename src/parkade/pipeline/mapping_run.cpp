@@ -77,6 +77,9 @@ class MappingRun::Impl {
   std::vector<PipelineObserver*> observers;
   RunSummary summary;
   Trajectory trajectory;
+  Trajectory odometry;
+  std::unique_ptr<SemanticFrontEnd> front_end;
+  std::unique_ptr<FusedMapper> mapper;
 
  private:
   // The estimator's part of one frame set; runs beside the tracking of the next.
@@ -92,6 +95,7 @@ class MappingRun::Impl {
   void process(Packet packet);
   void finishEstimation();
   void estimate(Estimation& work);
+  PoseEstimate fuse(const Estimation& work, const PoseEstimate& estimate);
   MotionPrior predict(const Packet& packet);
   void summarise(Clock::time_point begin);
 
@@ -106,7 +110,9 @@ class MappingRun::Impl {
   StageClock read_clock_{"read"};
   StageClock track_clock_{"track"};
   StageClock estimate_clock_{"estimate"};
+  StageClock fuse_clock_{"fuse"};
   StageClock latency_clock_{"latency"};
+  Status fusion_status_;
   BusyTime busy_;
   ThreadPool pool_;  // last: its threads use what is above
 };
@@ -140,7 +146,7 @@ void MappingRun::Impl::process(Packet packet) {
   busy_.add(begin, end);
   last_t_ns_ = packet.frames.t_ns;
   last_imu_ = packet.imu;
-  packet.frames.images.clear();
+  if (mapper == nullptr) packet.frames.images.clear();  // else the estimation labels them
   running_ = std::make_unique<Estimation>();
   running_->packet = std::move(packet);
   running_->tracks = std::move(tracks);
@@ -153,14 +159,31 @@ void MappingRun::Impl::estimate(Estimation& work) {
   for (const WheelSample& sample : work.packet.wheel) estimator_.addWheel(sample);
   const PoseEstimate estimate = estimator_.addTracks(work.tracks);
   work.state = estimator_.predictor();
+  const PoseEstimate fused = mapper == nullptr ? estimate : fuse(work, estimate);
   if (estimate.health != Health::kInitialising) {
-    trajectory.push_back({estimate.t_ns, estimate.T_odom_vehicle});
+    odometry.push_back({estimate.t_ns, estimate.T_odom_vehicle});
+    trajectory.push_back({fused.t_ns, fused.T_odom_vehicle});
   }
+  work.packet.frames.images.clear();
   work.end = Clock::now();
   for (PipelineObserver* observer : observers) {
     observer->onPose({work.packet.frames.index, static_cast<int>(work.tracks.observations.size()),
-                      estimate, estimator_.statistics()});
+                      fused, estimator_.statistics()});
   }
+}
+
+PoseEstimate MappingRun::Impl::fuse(const Estimation& work, const PoseEstimate& estimate) {
+  PoseEstimate fused = mapper->addOdometry(estimate);
+  if (!front_end->addOdometry(estimate, estimator_.landmarks())) return fused;
+  const Result<SemanticFrame> frame = front_end->look(work.packet.frames);
+  if (!frame) {
+    if (fusion_status_) fusion_status_ = frame.error();
+    return fused;
+  }
+  const Clock::time_point begin = Clock::now();
+  fused = mapper->addSemantics(*frame);
+  fuse_clock_.add(millisecondsBetween(begin, Clock::now()));
+  return fused;
 }
 
 void MappingRun::Impl::finishEstimation() {
@@ -223,7 +246,9 @@ Status MappingRun::Impl::run(SensorSource& source, const ProgressCallback& progr
   }
   dispatch();
   finishEstimation();
+  if (mapper != nullptr) mapper->finish();
   summarise(begin);
+  if (status && !fusion_status_) status = fusion_status_;
   return status;
 }
 
@@ -233,16 +258,20 @@ void MappingRun::Impl::summarise(Clock::time_point begin) {
   summary.wall_s = 1e-3 * millisecondsBetween(begin, Clock::now());
   summary.mean_tracks =
       summary.frame_sets > 0 ? static_cast<double>(observations_) / summary.frame_sets : 0.0;
-  summary.stages = {read_clock_.timing(), track_clock_.timing(), estimate_clock_.timing(),
-                    latency_clock_.timing()};
+  summary.stages = {read_clock_.timing(), track_clock_.timing(), estimate_clock_.timing()};
+  if (mapper != nullptr) {
+    for (const StageTiming& stage : front_end->timings()) summary.stages.push_back(stage);
+    summary.stages.push_back(fuse_clock_.timing());
+  }
+  summary.stages.push_back(latency_clock_.timing());
 }
 
 MappingRun::MappingRun(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 MappingRun::~MappingRun() = default;
 
 Result<std::unique_ptr<MappingRun>> MappingRun::create(const Rig& rig,
-                                                       const PipelineOptions& options,
-                                                       int threads) {
+                                                       const PipelineOptions& options, int threads,
+                                                       RunMethod method) {
   PARKADE_CHECK(threads >= 1, "{} threads", threads);
   const Result<std::vector<cv::Mat>> masks = readBodyMasks(rig);
   if (!masks) return masks.error();
@@ -251,6 +280,16 @@ Result<std::unique_ptr<MappingRun>> MappingRun::create(const Rig& rig,
   auto impl = std::make_unique<Impl>(rig, options, threads);
   for (std::size_t c = 0; c < masks->size(); ++c) {
     if (!(*masks)[c].empty()) impl->tracker.setMask(static_cast<int>(c), (*masks)[c]);
+  }
+  if (method == RunMethod::kFused) {
+    auto front_end = SemanticFrontEnd::create(rig, options.semantics);
+    if (!front_end) return front_end.error();
+    impl->front_end = std::move(front_end).value();
+    std::vector<Eigen::Vector3d> viewpoints;
+    for (const RigCamera& camera : rig.cameras) {
+      viewpoints.push_back(camera.T_vehicle_cam.translation());
+    }
+    impl->mapper = std::make_unique<FusedMapper>(options.fusion, std::move(viewpoints));
   }
   return std::unique_ptr<MappingRun>(new MappingRun(std::move(impl)));
 }
@@ -274,6 +313,14 @@ const Trajectory& MappingRun::trajectory() const {
 std::vector<CameraCalibrationEstimate> MappingRun::calibration() const {
   return impl_->estimator().calibration();
 }
+const Trajectory& MappingRun::odometry() const {
+  return impl_->odometry;
+}
+
+const FusedMapper* MappingRun::mapper() const {
+  return impl_->mapper.get();
+}
+
 Trajectory MappingRun::finalTrajectory() const {
   return impl_->estimator().finalTrajectory();
 }

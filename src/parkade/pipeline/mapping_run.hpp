@@ -9,6 +9,8 @@
 #include "parkade/core/options.hpp"
 #include "parkade/core/progress.hpp"
 #include "parkade/core/result.hpp"
+#include "parkade/pipeline/fused_mapper.hpp"
+#include "parkade/pipeline/semantic_front_end.hpp"
 #include "parkade/pipeline/stage_clock.hpp"
 #include "parkade/tracking/options.hpp"
 #include "parkade/tracking/tracker.hpp"
@@ -22,9 +24,13 @@ namespace parkade {
 struct PipelineOptions {
   TrackingOptions tracking;
   VioOptions vio;
+  SemanticFrontEndOptions semantics;
+  FusedMapperOptions fusion;
   void visit(OptionVisitor& v) {
     v.group("tracking", tracking);
     v.group("vio", vio);
+    v.group("semantics", semantics);
+    v.group("fusion", fusion);
   }
 };
 
@@ -42,6 +48,12 @@ struct PoseEvent {
   int num_tracks = 0;
   const PoseEstimate& estimate;  ///< no pose yet while the health is kInitialising
   const VioStatistics& statistics;
+};
+
+/// What a run works with.
+enum class RunMethod {
+  kVis,    ///< key points and the inertial unit
+  kFused,  ///< and semantic features, with a map
 };
 
 /// Looks on while a run goes. The frame sets come in their order to each of the two; with two
@@ -77,7 +89,8 @@ class MappingRun {
  public:
   /// Fails where the rig names a mask that cannot be read.
   static Result<std::unique_ptr<MappingRun>> create(const Rig& rig, const PipelineOptions& options,
-                                                    int threads);
+                                                    int threads,
+                                                    RunMethod method = RunMethod::kVis);
   ~MappingRun();
 
   /// Not owned; must live as long as run() does.
@@ -88,8 +101,12 @@ class MappingRun {
   Status run(SensorSource& source, const ProgressCallback& progress = {});
 
   [[nodiscard]] const RunSummary& summary() const;
-  /// The poses as they were known at their frame sets.
+  /// The poses as they were known at their frame sets: fused ones where the method fuses.
   [[nodiscard]] const Trajectory& trajectory() const;
+  /// The odometry's poses, as they were known at their frame sets.
+  [[nodiscard]] const Trajectory& odometry() const;
+  /// The fusing mapper, finished when run() is over; null where the method has none.
+  [[nodiscard]] const FusedMapper* mapper() const;
   /// The same instants, estimated with all that came after.
   [[nodiscard]] Trajectory finalTrajectory() const;
   [[nodiscard]] std::vector<Landmark> landmarks() const;

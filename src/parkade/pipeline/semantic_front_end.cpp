@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/pipeline/semantic_front_end.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "parkade/semantics/class_map.hpp"
+#include "parkade/semantics/segmentation.hpp"
+#include "parkade/tracking/overlap.hpp"
+
+namespace parkade {
+
+struct SemanticFrontEnd::Impl {
+  Impl(const Rig& rig, const SemanticFrontEndOptions& o, SegmentationNetwork n)
+      : options(o), stitcher(rig, o.bev), network(std::move(n)), ground(o.ground) {}
+
+  SemanticFrontEndOptions options;
+  BevStitcher stitcher;
+  SegmentationNetwork network;
+  GroundPlaneEstimator ground;
+  GroundPlaneEstimate floor;
+  std::optional<PoseEstimate> last_look;
+  PoseEstimate now;
+  StageClock stitch_clock{"bev"};
+  StageClock segment_clock{"segment"};
+  StageClock feature_clock{"features"};
+};
+
+SemanticFrontEnd::SemanticFrontEnd(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+SemanticFrontEnd::~SemanticFrontEnd() = default;
+
+Result<std::unique_ptr<SemanticFrontEnd>> SemanticFrontEnd::create(
+    const Rig& rig, const SemanticFrontEndOptions& options) {
+  std::string path = options.network;
+  if (path.empty()) {
+    const Result<std::string> own = findModel("bev_segmentation");
+    if (!own) return own.error();
+    path = *own;
+  }
+  Result<SegmentationNetwork> network = SegmentationNetwork::load(path);
+  if (!network) return network.error();
+  const Result<std::vector<cv::Mat>> masks = readBodyMasks(rig);
+  if (!masks) return masks.error();
+  auto impl = std::make_unique<Impl>(rig, options, std::move(network).value());
+  for (std::size_t c = 0; c < masks->size(); ++c) {
+    if (!(*masks)[c].empty()) impl->stitcher.setMask(static_cast<int>(c), (*masks)[c]);
+  }
+  return std::unique_ptr<SemanticFrontEnd>(new SemanticFrontEnd(std::move(impl)));
+}
+
+bool SemanticFrontEnd::addOdometry(const PoseEstimate& odometry,
+                                   const std::vector<Landmark>& landmarks) {
+  Impl& m = *impl_;
+  if (odometry.health == Health::kInitialising) return false;
+  m.floor = m.ground.update(odometry, landmarks);
+  m.now = odometry;
+  if (!m.last_look) return true;
+  const double moved =
+      (odometry.T_odom_vehicle.translation() - m.last_look->T_odom_vehicle.translation()).norm();
+  return moved >= m.options.distance_m ||
+         toSeconds(odometry.t_ns - m.last_look->t_ns) >= m.options.interval_s;
+}
+
+Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames) {
+  using Clock = std::chrono::steady_clock;
+  const auto since = [](Clock::time_point begin) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+  };
+  Impl& m = *impl_;
+  m.last_look = m.now;
+  Clock::time_point begin = Clock::now();
+  const BevImage bev = m.stitcher.stitch(frames, m.floor.attitude);
+  m.stitch_clock.add(since(begin));
+  begin = Clock::now();
+  Result<BevLabels> labels = m.network.segment(bev);
+  if (!labels) return labels.error();
+  m.segment_clock.add(since(begin));
+  begin = Clock::now();
+  SemanticFrame frame;
+  frame.labels = std::move(labels).value();
+  frame.labels.t_ns = frames.t_ns;
+  frame.attitude = m.floor.attitude;
+  frame.attitude_sigma = std::max(m.floor.sigma_pitch, m.floor.sigma_roll);
+  frame.line_points = linePointsFromLabels(frame.labels, frame.attitude_sigma, m.options.lines);
+  frame.line_segments = segmentsOf(frame.line_points);
+  m.feature_clock.add(since(begin));
+  return frame;
+}
+
+std::vector<StageTiming> SemanticFrontEnd::timings() const {
+  return {impl_->stitch_clock.timing(), impl_->segment_clock.timing(),
+          impl_->feature_clock.timing()};
+}
+
+}  // namespace parkade

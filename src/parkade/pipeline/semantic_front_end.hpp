@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "parkade/bev/ground_plane.hpp"
+#include "parkade/bev/stitcher.hpp"
+#include "parkade/core/options.hpp"
+#include "parkade/core/result.hpp"
+#include "parkade/pipeline/stage_clock.hpp"
+#include "parkade/semantics/label_lines.hpp"
+#include "parkade/types/landmark.hpp"
+#include "parkade/types/pose_estimate.hpp"
+#include "parkade/types/semantic_features.hpp"
+
+namespace parkade {
+
+struct SemanticFrontEndOptions {
+  std::string network;
+  double distance_m = 0.15;
+  double interval_s = 0.5;
+  BevOptions bev;
+  GroundPlaneOptions ground;
+  LabelLineOptions lines;
+
+  void visit(OptionVisitor& v) {
+    v.field("network", network,
+            "Class map of the network to use; empty: the one that comes along.");
+    v.field("distance_m", distance_m, "m", "The car moves this far between two pictures.", 0.0,
+            10.0);
+    v.field("interval_s", interval_s, "s", "Or this time passes.", 0.01, 60.0);
+    v.group("bev", bev);
+    v.group("ground", ground);
+    v.group("lines", lines);
+  }
+};
+
+/// From the cameras' pictures to semantic features: stitches them on the floor that the odometry's
+/// landmarks tell, labels the picture, and draws features from the labels.
+class SemanticFrontEnd {
+ public:
+  /// Fails where there is no network, or masks of the rig cannot be read.
+  static Result<std::unique_ptr<SemanticFrontEnd>> create(const Rig& rig,
+                                                          const SemanticFrontEndOptions& options);
+  ~SemanticFrontEnd();
+
+  /// Takes the odometry of every frame set, in order; true where its pictures are due.
+  bool addOdometry(const PoseEstimate& odometry, const std::vector<Landmark>& landmarks);
+  /// The features of that frame set.
+  Result<SemanticFrame> look(const FrameSet& frames);
+
+  [[nodiscard]] std::vector<StageTiming> timings() const;
+
+ private:
+  struct Impl;
+  explicit SemanticFrontEnd(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace parkade
