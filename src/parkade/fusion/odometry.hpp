@@ -12,9 +12,9 @@ namespace parkade {
 
 /// How the visual-inertial odometry errs between two frame sets, at least.
 struct OdometryNoiseOptions {
-  double translation = 0.01;
-  double yaw_deg = 0.03;
-  double height = 0.01;
+  double translation = 0.005;
+  double yaw_deg = 0.01;
+  double height = 0.003;
   double standing = 0.0005;
   double degraded_factor = 5.0;
 

@@ -56,7 +56,12 @@ ObserverNoise usualNoise() {
 
 DriveResult drive(const Plan& plan, const DriveOptions& options, std::uint64_t seed) {
   const PlanObserver observer(plan, usualNoise());
-  FusedMapper mapper({}, {});
+  // As bad as this odometry is; the defaults are for a better one.
+  FusedMapperOptions fusion;
+  fusion.odometry.translation = 0.02;
+  fusion.odometry.yaw_deg = 0.05;
+  fusion.compass.sigma_deg = 0.5;
+  FusedMapper mapper(fusion, {});
   Random random(seed);
   constexpr double kStep = 0.25;
   const std::vector<SE2> poses = testing::blockDrive(60.0, options.laps, kStep);
