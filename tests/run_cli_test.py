@@ -161,9 +161,24 @@ class RunEurocTest(unittest.TestCase):
         self.assertIn("cam7", result.stderr)
 
     def test_other_methods_say_that_they_are_missing(self):
-        result = parkade("run", EUROC, "--out", self.folder / "x", "--method", "fused")
+        result = parkade("run", EUROC, "--out", self.folder / "x", "--method", "semantic")
         self.assertEqual(result.returncode, 1)
         self.assertIn("not available yet", result.stderr)
+
+    def test_fused_writes_a_map_and_the_same_bytes_on_any_number_of_threads(self):
+        runs = []
+        for threads in (1, 2):
+            out = self.folder / f"fused{threads}"
+            result = parkade(
+                "run", EUROC, "--out", out, "--method", "fused", "--duration", 5, "--threads", threads
+            )
+            self.assertEqual(result.returncode, 0, result.stderr)
+            runs.append(out)
+        for name in ("trajectory.tum", "trajectory_vio.tum", "health.csv", "map/map.png"):
+            self.assertEqual((runs[0] / name).read_bytes(), (runs[1] / name).read_bytes(), name)
+        stages = json.loads((runs[0] / "timing.json").read_text(encoding="utf-8"))["stages"]
+        self.assertLessEqual({"bev", "segment", "features", "fuse"}, set(stages))
+        self.assertEqual(parkade("map", "check", runs[0] / "map.db").returncode, 0)
 
     def test_refuses_a_folder_with_something_else(self):
         foreign = self.folder / "foreign"
