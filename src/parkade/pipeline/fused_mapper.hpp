@@ -27,8 +27,8 @@ struct SubmapOptions {
   double min_age_m = 3.0;
   double revisit_age_m = 30.0;
   double register_distance_m = 1.0;
-  double sigma_m = 0.01;
-  double sigma_deg = 0.05;
+  double sigma_m = 0.03;
+  double sigma_deg = 0.15;
   double gate_probability = 0.999;
   double height_sigma_m = 0.03;
   int max_anchors = 160;
@@ -45,8 +45,10 @@ struct SubmapOptions {
             1000.0);
     v.field("register_distance_m", register_distance_m, "m", "Between frames that are registered.",
             0.1, 50.0);
-    v.field("sigma_m", sigma_m, "m", "Error of a submap's features that all its frames share.", 0.0,
-            1.0);
+    v.field(
+        "sigma_m", sigma_m, "m",
+        "Error of a submap's features that all its frames share: calibration, levelling, labels.",
+        0.0, 1.0);
     v.field("sigma_deg", sigma_deg, "deg", "The same of their heading.", 0.0, 5.0);
     v.field("gate_probability", gate_probability, "probability",
             "Registrations that are kept, of those that are right.", 0.5, 0.999999);

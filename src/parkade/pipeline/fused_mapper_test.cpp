@@ -61,6 +61,8 @@ DriveResult drive(const Plan& plan, const DriveOptions& options, std::uint64_t s
   fusion.odometry.translation = 0.02;
   fusion.odometry.yaw_deg = 0.05;
   fusion.compass.sigma_deg = 0.5;
+  fusion.submaps.sigma_m = 0.01;
+  fusion.submaps.sigma_deg = 0.05;
   FusedMapper mapper(fusion, {});
   Random random(seed);
   constexpr double kStep = 0.25;
