@@ -17,7 +17,7 @@ struct MirrorRay {
   float weight = 0.0F;  ///< reflectance times the share of the pixel; 0: no ray
   std::uint32_t pixel = 0;
   bool from_floor = false;
-  std::uint8_t place = 0;     ///< in the floor's pattern
+  std::uint8_t place = 0;                               ///< in the floor's pattern
   Eigen::Vector3f lamp_glow = Eigen::Vector3f::Zero();  ///< lamps in the lobe, if in sight
 };
 
