@@ -119,7 +119,7 @@ void drawFloor(GarageStyle& style, Random random) {
 
 // Who paints lines picks a floor that shows them: light floors under dull white would hide them.
 void keepPaintVisible(GarageStyle& style) {
-  constexpr float kContrast = 1.7F;
+  constexpr float kContrast = 2.3F;
   const auto luminance = [](const Eigen::Vector3f& c) {
     return 0.2126F * c.x() + 0.7152F * c.y() + 0.0722F * c.z();
   };
