@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Parkade authors
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
+#include <malloc.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -35,7 +36,17 @@ void logToStderr() {
   });
 }
 
+// Pictures come and go by the hundred: their memory is kept, not handed back and zeroed anew.
+void keepLargeBlocks() {
+#ifdef __GLIBC__
+  constexpr int kLargest = 16 << 20;  // glibc's limit is 32 MB
+  mallopt(M_MMAP_THRESHOLD, kLargest);
+  mallopt(M_TRIM_THRESHOLD, 4 * kLargest);
+#endif
+}
+
 int run(int argc, char** argv) {
+  keepLargeBlocks();
   CLI::App app{"Parkade: semantic visual-inertial SLAM for automated valet parking", "parkade"};
   app.set_version_flag("--version", "parkade " PARKADE_VERSION);
   app.set_help_flag("-h,--help", "Show this help and exit");

@@ -380,12 +380,15 @@ void CameraTracker::commit(const std::vector<Flow>& flows) {
   views_ = std::move(kept);
 }
 
-std::vector<Corner> CameraTracker::detect() const {
+std::vector<Corner> CameraTracker::detect() {
   if (!ok_) return {};
   std::vector<Eigen::Vector2d> taken;
   taken.reserve(views_.size());
   for (const FeatureView& view : views_) taken.push_back(view.pixel);
-  return detector_.detect(pyramid_[0], mask_, taken);
+  // What a passing thing hides may hold corners in the next picture.
+  const bool partly_hidden = mask_.data != static_mask_.data;
+  return detector_.detect(pyramid_[0], mask_, taken, last_t_ns_,
+                          partly_hidden ? nullptr : &barren_);
 }
 
 bool CameraTracker::add(std::uint64_t id, const Eigen::Vector2d& pixel) {

@@ -42,7 +42,7 @@ class CameraTracker {
   void track(const cv::Mat& image, TimeNs t_ns, const MotionPrior& prior, std::uint64_t seed);
 
   /// Corners in cells that hold no feature; nothing where the camera is not ok.
-  [[nodiscard]] std::vector<Corner> detect() const;
+  [[nodiscard]] std::vector<Corner> detect();
 
   /// Takes a new feature; false where it has no patch or ray there.
   bool add(std::uint64_t id, const Eigen::Vector2d& pixel);
@@ -81,6 +81,7 @@ class CameraTracker {
   TrackingOptions options_;
   int index_;
   GridDetector detector_;
+  std::vector<TimeNs> barren_;  // cells of the detector, since when
   ContrastNormaliser contrast_;
   cv::Mat static_mask_;   // validity and body
   cv::Mat dynamic_mask_;  // of this frame set, or empty

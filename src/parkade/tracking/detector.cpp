@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 
 #include "parkade/core/check.hpp"
@@ -16,6 +17,7 @@ namespace {
 constexpr int kBorder = Patch::kRadius + 2;
 // Tries per cell: the best place may lie too close to a feature of the next cell.
 constexpr int kMaxTries = 4;
+constexpr TimeNs kNever = std::numeric_limits<TimeNs>::min();
 
 }  // namespace
 
@@ -28,10 +30,12 @@ GridDetector::GridDetector(const DetectionOptions& options, int width, int heigh
 }
 
 std::vector<Corner> GridDetector::detect(const cv::Mat& image, const cv::Mat& mask,
-                                         const std::vector<Eigen::Vector2d>& taken) const {
+                                         const std::vector<Eigen::Vector2d>& taken, TimeNs t_ns,
+                                         std::vector<TimeNs>* barren) const {
   PARKADE_CHECK(image.type() == CV_8UC1 && image.cols == width_ && image.rows == height_,
                 "image {} x {} of type {}", image.cols, image.rows, image.type());
   const int cells = columns_ * rows_;
+  if (barren != nullptr) barren->resize(static_cast<std::size_t>(cells), kNever);
   std::vector<std::uint8_t> filled(static_cast<std::size_t>(cells), 0);
   for (const Eigen::Vector2d& pixel : taken) {
     const int column = std::clamp(static_cast<int>(pixel.x() * columns_ / width_), 0, columns_ - 1);
@@ -48,6 +52,11 @@ std::vector<Corner> GridDetector::detect(const cv::Mat& image, const cv::Mat& ma
   const int halo = options_.block_px / 2 + 2;
   for (int cell = 0; cell < cells; ++cell) {
     if (filled[static_cast<std::size_t>(cell)] != 0) continue;
+    if (barren != nullptr && (*barren)[static_cast<std::size_t>(cell)] != kNever &&
+        toSeconds(t_ns - (*barren)[static_cast<std::size_t>(cell)]) < options_.rest_s) {
+      continue;
+    }
+    const std::size_t found_before = corners.size();
     const int column = cell % columns_;
     const int row = cell / columns_;
     const int x0 = std::max(column * width_ / columns_, kBorder);
@@ -88,6 +97,9 @@ std::vector<Corner> GridDetector::detect(const cv::Mat& image, const cv::Mat& ma
       corners.push_back({pixel, gradient});
       near.push_back(pixel);
       break;
+    }
+    if (barren != nullptr) {
+      (*barren)[static_cast<std::size_t>(cell)] = corners.size() == found_before ? t_ns : kNever;
     }
   }
   return corners;

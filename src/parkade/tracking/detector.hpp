@@ -6,6 +6,7 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
+#include "parkade/core/time.hpp"
 #include "parkade/tracking/options.hpp"
 
 namespace parkade {
@@ -23,9 +24,13 @@ class GridDetector {
   GridDetector(const DetectionOptions& options, int width, int height);
 
   /// image: CV_8UC1; mask: CV_8UC1, 0 where no corner may lie, or empty; taken: features that are
-  /// already there. Corners come cell by cell, row after row.
+  /// already there. Corners come cell by cell, row after row. barren: nothing, or when each cell
+  /// was last found to have no corner: kept between the pictures of a camera, empty before the
+  /// first. Such a cell is left alone for `rest_s`, since the next picture looks alike.
   [[nodiscard]] std::vector<Corner> detect(const cv::Mat& image, const cv::Mat& mask,
-                                           const std::vector<Eigen::Vector2d>& taken) const;
+                                           const std::vector<Eigen::Vector2d>& taken,
+                                           TimeNs t_ns = 0,
+                                           std::vector<TimeNs>* barren = nullptr) const;
 
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int rows() const { return rows_; }

@@ -11,6 +11,7 @@ namespace parkade {
 /// Where new corners are looked for.
 struct DetectionOptions {
   int features = 150;
+  double rest_s = 0.08;
   double min_distance_px = 10.0;
   double min_gradient = 3.0;
   int block_px = 5;
@@ -22,6 +23,8 @@ struct DetectionOptions {
     v.field("min_gradient", min_gradient, "grey/px",
             "Least gradient in a corner's weakest direction (root mean square over the block).", 0,
             255);
+    v.field("rest_s", rest_s, "s", "Time for which a cell without a corner is not looked at again.",
+            0, 1);
     v.field("block_px", block_px, "px", "Side of the block whose gradients make a corner.", 3, 15);
   }
 };

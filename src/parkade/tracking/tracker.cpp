@@ -234,14 +234,18 @@ void Tracker::Impl::commit(const std::vector<Search>& searches) {
 }
 
 void Tracker::Impl::detect() {
+  // Features wander, so that some cells hold several: fill the empty ones with the best corners
+  // only as far as the number aimed at.
+  const auto roomOf = [&](int c) {
+    return static_cast<std::size_t>(
+        std::max(0, options_.detection.features - static_cast<int>(camera(c).views().size())));
+  };
   std::vector<std::vector<Corner>> corners(cameras.size());
-  forEach(static_cast<int>(cameras.size()),
-          [&](int c) { corners[static_cast<std::size_t>(c)] = camera(c).detect(); });
+  forEach(static_cast<int>(cameras.size()), [&](int c) {
+    if (roomOf(c) > 0) corners[static_cast<std::size_t>(c)] = camera(c).detect();
+  });
   for (std::size_t c = 0; c < cameras.size(); ++c) {
-    // Features wander, so that some cells hold several: fill the empty ones with the best corners
-    // only as far as the number aimed at.
-    const auto room = static_cast<std::size_t>(
-        std::max(0, options_.detection.features - static_cast<int>(cameras[c].views().size())));
+    const std::size_t room = roomOf(static_cast<int>(c));
     std::stable_sort(corners[c].begin(), corners[c].end(),
                      [](const Corner& x, const Corner& y) { return x.gradient > y.gradient; });
     if (corners[c].size() > room) corners[c].resize(room);

@@ -9,7 +9,7 @@ namespace parkade {
 struct VioWindowOptions {
   int keyframes = 10;
   int recent_frames = 3;
-  int max_iterations = 4;
+  int max_iterations = 2;
   int max_landmarks = 320;
   double huber_px = 2.0;
   double outlier_sigma = 3.5;

@@ -10,11 +10,11 @@
 namespace parkade {
 
 struct SolveOptions {
-  int max_iterations = 4;
+  int max_iterations = 2;
   double huber = 2.0;  ///< standard deviations
   StillSigma still;
   /// Ends the solve once a step promises to lower the cost (half the chi-square) by less.
-  double min_decrease = 1e-3;
+  double min_decrease = 1e-2;
 };
 
 struct SolveSummary {
