@@ -58,7 +58,7 @@ function(parkade_room NAME)
     target_link_libraries(${TARGET} ${SCOPE} ${DEP})
   endforeach()
   foreach(DEP IN LISTS ROOM_PRIVATE_DEPS)
-    target_link_libraries(${TARGET} PRIVATE $<BUILD_INTERFACE:${DEP}>)
+    target_link_libraries(${TARGET} PRIVATE ${DEP})
   endforeach()
   if(PARKADE_BUILD_TESTS AND ROOM_TESTS)
     parkade_test(parkade_${NAME}_test SOURCES ${ROOM_TESTS}

@@ -82,6 +82,12 @@ Result<ClassMap> readClassMap(const std::string& path) {
 Result<std::string> findModel(const std::string& name) {
   std::vector<std::string> folders;
   if (const char* folder = std::getenv("PARKADE_MODELS")) folders.emplace_back(folder);
+  // Beside the running program first: an installation may have been moved as a whole.
+  std::error_code no_link;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", no_link);
+  if (!no_link) {
+    folders.push_back((program.parent_path().parent_path() / "share/parkade/models").string());
+  }
   folders.emplace_back(PARKADE_INSTALLED_MODELS);
   folders.emplace_back(PARKADE_SOURCE_MODELS);
   std::string looked;
