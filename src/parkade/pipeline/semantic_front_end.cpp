@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "parkade/geometry/se2.hpp"
+#include "parkade/pipeline/stitched_views.hpp"
 #include "parkade/semantics/class_map.hpp"
 #include "parkade/semantics/segmentation.hpp"
 #include "parkade/tracking/overlap.hpp"
@@ -13,13 +15,19 @@
 namespace parkade {
 
 struct SemanticFrontEnd::Impl {
-  Impl(const Rig& rig, const SemanticFrontEndOptions& o, SegmentationNetwork n)
-      : options(o), stitcher(rig, o.bev), network(std::move(n)), ground(o.ground) {}
+  Impl(const Rig& r, const SemanticFrontEndOptions& o, SegmentationNetwork n)
+      : options(o),
+        stitcher(r, o.bev),
+        network(std::move(n)),
+        ground(o.ground),
+        tracker(o.agents) {}
 
   SemanticFrontEndOptions options;
   BevStitcher stitcher;
   SegmentationNetwork network;
   GroundPlaneEstimator ground;
+  std::unique_ptr<ObjectExtractor> objects;  // made when the masks are known
+  AgentTracker tracker;
   GroundPlaneEstimate floor;
   std::optional<PoseEstimate> last_look;
   PoseEstimate now;
@@ -47,6 +55,8 @@ Result<std::unique_ptr<SemanticFrontEnd>> SemanticFrontEnd::create(
   for (std::size_t c = 0; c < masks->size(); ++c) {
     if (!(*masks)[c].empty()) impl->stitcher.setMask(static_cast<int>(c), (*masks)[c]);
   }
+  impl->objects = std::make_unique<ObjectExtractor>(impl->stitcher.geometry(),
+                                                    viewsOf(impl->stitcher, rig), options.objects);
   return std::unique_ptr<SemanticFrontEnd>(new SemanticFrontEnd(std::move(impl)));
 }
 
@@ -85,6 +95,9 @@ Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames) {
   frame.attitude_sigma = std::max(m.floor.sigma_pitch, m.floor.sigma_roll);
   frame.line_points = linePointsFromLabels(frame.labels, frame.attitude_sigma, m.options.lines);
   frame.line_segments = segmentsOf(frame.line_points);
+  FoundObjects found = m.objects->extract(frame.labels, frame.attitude_sigma);
+  frame.objects = std::move(found.objects);
+  frame.moving = m.tracker.update(found.agents, SE2::fromSE3(m.now.T_odom_vehicle), frames.t_ns);
   m.feature_clock.add(since(begin));
   return frame;
 }

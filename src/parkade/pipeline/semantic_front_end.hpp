@@ -11,7 +11,9 @@
 #include "parkade/core/options.hpp"
 #include "parkade/core/result.hpp"
 #include "parkade/pipeline/stage_clock.hpp"
+#include "parkade/semantics/agent_tracker.hpp"
 #include "parkade/semantics/label_lines.hpp"
+#include "parkade/semantics/object_extraction.hpp"
 #include "parkade/types/landmark.hpp"
 #include "parkade/types/pose_estimate.hpp"
 #include "parkade/types/semantic_features.hpp"
@@ -25,6 +27,8 @@ struct SemanticFrontEndOptions {
   BevOptions bev;
   GroundPlaneOptions ground;
   LabelLineOptions lines;
+  ObjectOptions objects;
+  AgentTrackerOptions agents;
 
   void visit(OptionVisitor& v) {
     v.field("network", network,
@@ -35,6 +39,8 @@ struct SemanticFrontEndOptions {
     v.group("bev", bev);
     v.group("ground", ground);
     v.group("lines", lines);
+    v.group("objects", objects);
+    v.group("agents", agents);
   }
 };
 

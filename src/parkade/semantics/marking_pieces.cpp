@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/semantics/marking_pieces.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace parkade {
+namespace {
+
+// Gaps in the paint of one object, m: wear, the gaps between a crossing's bars and between digits.
+struct ClassGap {
+  SemanticClass semantic_class;
+  double gap;
+};
+constexpr std::array<ClassGap, 7> kGaps = {{{SemanticClass::kArrow, 0.28},
+                                            {SemanticClass::kSpeedLimitPaint, 0.60},
+                                            {SemanticClass::kStopLine, 0.36},
+                                            {SemanticClass::kCrossing, 0.64},
+                                            {SemanticClass::kSpeedBump, 0.36},
+                                            {SemanticClass::kPaintedNumber, 0.24},
+                                            {SemanticClass::kWheelStop, 0.16}}};
+
+cv::Mat hiddenMask(const cv::Mat& labels) {
+  cv::Mat table(1, 256, CV_8UC1, cv::Scalar(255));
+  for (int c = 0; c < kNumSemanticClasses; ++c) {
+    if (!hidesGround(static_cast<SemanticClass>(c))) table.at<std::uint8_t>(c) = 0;
+  }
+  cv::Mat hidden;
+  cv::LUT(labels, table, hidden);
+  cv::rectangle(hidden, cv::Rect(0, 0, hidden.cols, hidden.rows), cv::Scalar(255), 1);
+  cv::dilate(hidden, hidden, cv::Mat::ones(5, 5, CV_8UC1));
+  return hidden;
+}
+
+void splitClass(const BevLabels& bev, const cv::Mat& hidden, const ClassGap& entry,
+                int min_confidence, int min_pixels, std::vector<MarkingPiece>& out) {
+  const cv::Mat paint = bev.labels == static_cast<int>(entry.semantic_class);
+  // Joined over gaps in a bounding box only: most classes cover little of a picture.
+  const cv::Rect box = cv::boundingRect(paint);
+  const int reach =
+      std::max(1, static_cast<int>(std::lround(0.5 * entry.gap / bev.geometry.metres_per_px)));
+  cv::Mat grown;
+  cv::dilate(paint(box), grown, cv::Mat::ones(2 * reach + 1, 2 * reach + 1, CV_8UC1));
+  cv::Mat piece_of;
+  const int count = cv::connectedComponents(grown, piece_of, 8, CV_32S);
+  struct Sum {
+    double confidence = 0.0;
+    int at_edge = 0;
+  };
+  std::vector<MarkingPiece> pieces(static_cast<std::size_t>(count));
+  std::vector<Sum> sums(static_cast<std::size_t>(count));
+  for (int v = 0; v < box.height; ++v) {
+    const std::uint8_t* painted = paint.ptr<std::uint8_t>(v + box.y) + box.x;
+    const std::uint8_t* sure = bev.confidence.ptr<std::uint8_t>(v + box.y) + box.x;
+    const std::uint8_t* edge = hidden.ptr<std::uint8_t>(v + box.y) + box.x;
+    const int* index = piece_of.ptr<int>(v);
+    for (int u = 0; u < box.width; ++u) {
+      if (painted[u] == 0 || sure[u] < min_confidence) continue;
+      const auto i = static_cast<std::size_t>(index[u]);
+      pieces[i].points.push_back(bev.geometry.toGround(Eigen::Vector2d(u + box.x, v + box.y)));
+      sums[i].confidence += sure[u];
+      sums[i].at_edge += edge[u] != 0 ? 1 : 0;
+    }
+  }
+  for (std::size_t i = 1; i < pieces.size(); ++i) {
+    MarkingPiece& piece = pieces[i];
+    if (static_cast<int>(piece.points.size()) < min_pixels) continue;
+    constexpr int kTouches = 3;
+    piece.semantic_class = entry.semantic_class;
+    piece.confidence = sums[i].confidence / (255.0 * static_cast<double>(piece.points.size()));
+    piece.cut = sums[i].at_edge >= kTouches;
+    out.push_back(std::move(piece));
+  }
+}
+
+}  // namespace
+
+bool hidesGround(SemanticClass semantic_class) {
+  switch (semantic_class) {
+    case SemanticClass::kFloor:
+    case SemanticClass::kSlotLine:
+    case SemanticClass::kLaneLine:
+    case SemanticClass::kArrow:
+    case SemanticClass::kSpeedLimitPaint:
+    case SemanticClass::kStopLine:
+    case SemanticClass::kCrossing:
+    case SemanticClass::kSpeedBump:
+    case SemanticClass::kPaintedNumber:
+    case SemanticClass::kWheelStop:
+      return false;
+    default:
+      return true;
+  }
+}
+
+std::vector<MarkingPiece> findMarkings(const BevLabels& labels, int min_confidence,
+                                       int min_pixels) {
+  std::array<int, 256> counts{};
+  for (int v = 0; v < labels.labels.rows; ++v) {
+    const std::uint8_t* row = labels.labels.ptr<std::uint8_t>(v);
+    for (int u = 0; u < labels.labels.cols; ++u) ++counts[row[u]];
+  }
+  std::vector<MarkingPiece> pieces;
+  cv::Mat hidden;
+  for (const ClassGap& entry : kGaps) {
+    if (counts[static_cast<std::size_t>(entry.semantic_class)] < min_pixels) continue;
+    if (hidden.empty()) hidden = hiddenMask(labels.labels);
+    splitClass(labels, hidden, entry, min_confidence, min_pixels, pieces);
+  }
+  return pieces;
+}
+
+}  // namespace parkade
