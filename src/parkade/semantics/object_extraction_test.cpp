@@ -30,11 +30,11 @@ class Scene {
       for (int u = 0; u < g.width_px; ++u) {
         const Eigen::Vector2d ray = g.toGround(Eigen::Vector2d(u, v)) - view.foot;
         // The sight line at height z is over foot + ray * (1 - z / h).
-        const int steps = 24;
         bool hit = false;
-        for (int k = 0; k <= steps && !hit; ++k) {
-          const double z = bottom + (std::min(top, view.height) - bottom) * k / steps;
-          hit = box.contains(view.foot + (1.0 - z / view.height) * ray, 0.0);
+        double share = 1.0 - bottom / view.height;
+        const double least = std::max(0.02, 1.0 - top / view.height);
+        for (; share > least && !hit; share -= 0.02 * share + 0.002) {
+          hit = box.contains(view.foot + share * ray, 0.0);
         }
         if (hit) labels.labels.at<std::uint8_t>(v, u) = static_cast<std::uint8_t>(c);
       }
