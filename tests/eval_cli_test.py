@@ -221,6 +221,13 @@ class EvalTest(unittest.TestCase):
         self.refused(2, good, good, "--no-such-option")
         self.refused(2, good, good, "--rpe-unit", "f", "--rpe-delta", 1.5)
 
+    def test_map_needs_a_map_and_its_truth(self):
+        result = evaluate("map", self.folder, self.folder)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("truth/garage.json", result.stderr)
+        self.assertEqual(evaluate("map", self.folder).returncode, 2)
+        self.assertEqual(evaluate("map", "--min-iou", "2", "a", "b").returncode, 2)
+
     def test_help_shows_examples(self):
         result = evaluate("--help")
         self.assertEqual(result.returncode, 0)

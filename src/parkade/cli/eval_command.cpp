@@ -9,6 +9,9 @@
 #include <utility>
 
 #include "parkade/cli/command.hpp"
+#ifdef PARKADE_WITH_EVAL_MAP
+#include "parkade/cli/eval_map.hpp"
+#endif
 #include "parkade/eval/plot.hpp"
 #include "parkade/eval/report.hpp"
 #include "parkade/io/file.hpp"
@@ -43,6 +46,7 @@ constexpr const char* kFooter =
     "\n"
     "Examples:\n"
     "  parkade eval OUT SEQ --json metrics.json --plot error.svg\n"
+    "  parkade eval map OUT SEQ --json map.json --picture errors.png\n"
     "  parkade eval estimate.tum groundtruth.tum --align sim3 --rpe-delta 1 --rpe-unit s";
 
 // A run's trajectory, where the path is a run's folder.
@@ -141,12 +145,16 @@ Status evaluateFiles(const EvalArguments& arguments) {
 }  // namespace
 
 void addEvalCommand(CLI::App& app, int& exit_code) {
-  auto* command = app.add_subcommand("eval", "Judge a trajectory by a reference: APE, RPE, drift");
+  auto* command =
+      app.add_subcommand("eval", "Judge a trajectory by a reference: APE, RPE, drift; or a map");
   const auto a = std::make_shared<EvalArguments>();
   const std::vector<std::string> formats = {"auto", "tum", "kitti", "euroc"};
-  command->add_option("TRAJECTORY", a->trajectory, "Trajectory file or run folder")->required();
-  command->add_option("REFERENCE", a->reference, "Reference file, sequence or run folder")
-      ->required();
+  // Not required(): 'eval map' does without; the callback asks for them.
+  command->add_option("TRAJECTORY", a->trajectory, "Trajectory file or run folder");
+  command->add_option("REFERENCE", a->reference, "Reference file, sequence or run folder");
+#ifdef PARKADE_WITH_EVAL_MAP
+  addEvalMapCommand(*command, exit_code);
+#endif
 
   AssociationOptions& association = a->options.association;
   command
@@ -210,7 +218,10 @@ void addEvalCommand(CLI::App& app, int& exit_code) {
       ->capture_default_str()
       ->group("Output");
   command->footer(kFooter);
-  command->callback([a, &exit_code] {
+  command->callback([a, command, &exit_code] {
+    if (!command->get_subcommands().empty()) return;
+    if (a->trajectory.empty()) throw CLI::RequiredError("TRAJECTORY");
+    if (a->reference.empty()) throw CLI::RequiredError("REFERENCE");
     if (a->options.rpe.unit == "f" && a->options.rpe.delta != std::floor(a->options.rpe.delta)) {
       throw CLI::ValidationError("--rpe-delta",
                                  fmt::format("{} frames: a whole number", a->options.rpe.delta));
