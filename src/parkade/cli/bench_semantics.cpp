@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <cmath>
 #include <functional>
 
 #include <memory>
@@ -40,6 +41,7 @@ struct BenchArguments {
   bool fast = false;
   int threads = defaultThreads();
   SegmentationScoreOptions segmentation;
+  std::string labels = "network";
   std::vector<std::string> settings;
   SampleOptions options;
   BevOptions bev;
@@ -119,11 +121,21 @@ Status writeSamples(const BenchArguments& arguments, const std::vector<int>& see
 
 Result<std::vector<std::unique_ptr<SampleScore>>> makeScores(const BenchArguments& arguments) {
   std::vector<std::unique_ptr<SampleScore>> scores;
-  SegmentationScoreOptions options = arguments.segmentation;
-  if (arguments.pictures) options.pictures = joinPath(arguments.out, "pictures");
-  Result<std::unique_ptr<SampleScore>> segmentation = makeSegmentationScore(options);
-  if (!segmentation) return segmentation.error();
-  scores.push_back(std::move(segmentation).value());
+  const std::string pictures =
+      arguments.pictures ? joinPath(arguments.out, "pictures") : std::string();
+  const bool true_labels = arguments.labels == "truth";
+  if (!true_labels) {
+    SegmentationScoreOptions options = arguments.segmentation;
+    options.pictures = pictures;
+    Result<std::unique_ptr<SampleScore>> segmentation = makeSegmentationScore(options);
+    if (!segmentation) return segmentation.error();
+    scores.push_back(std::move(segmentation).value());
+  }
+  Result<std::unique_ptr<SampleScore>> objects =
+      makeObjectScore({arguments.segmentation.bev_network, true_labels, pictures,
+                       arguments.options.attitude_error_deg * M_PI / 180.0});
+  if (!objects) return objects.error();
+  scores.push_back(std::move(objects).value());
   return scores;
 }
 
@@ -151,6 +163,7 @@ Status score(const BenchArguments& arguments, const std::vector<int>& seeds) {
   if (!status) return status;
   nlohmann::json metrics;
   metrics["garages"] = seeds;
+  metrics["labels"] = arguments.labels;
   metrics["frames_per_garage"] = arguments.options.frames;
   metrics["attitude_error_deg"] = arguments.options.attitude_error_deg;
   metrics["height_error_cm"] = arguments.options.height_error_cm;
@@ -196,6 +209,11 @@ void addBenchSemantics(CLI::App& bench, int& exit_code) {
       ->add_option("--view-network", arguments->segmentation.raw_network,
                    "Class map of another network for the cameras' views")
       ->type_name("YAML");
+  command
+      ->add_option("--labels", arguments->labels,
+                   "What features are drawn from: the network's labels, or the true ones")
+      ->check(CLI::IsMember({"network", "truth"}))
+      ->capture_default_str();
   command->add_flag("--pictures", arguments->pictures,
                     "Write every picture, with found and with true labels, to DIR/pictures");
   command->add_option("--samples", arguments->samples, "Write training samples instead of scores")

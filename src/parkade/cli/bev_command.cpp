@@ -11,7 +11,10 @@
 #include "parkade/cli/open_source.hpp"
 #include "parkade/core/progress.hpp"
 #include "parkade/io/image_file.hpp"
+#include "parkade/pipeline/stitched_views.hpp"
 #include "parkade/semantics/draw_labels.hpp"
+#include "parkade/semantics/draw_objects.hpp"
+#include "parkade/semantics/object_extraction.hpp"
 #include "parkade/semantics/segmentation.hpp"
 #include "parkade/tracking/overlap.hpp"
 
@@ -64,20 +67,35 @@ class BevWriter {
     return writer;
   }
 
+  /// The stitcher with its masks, whose pictures these are: objects are drawn too.
+  void setViews(const BevStitcher& stitcher, const Rig& rig) {
+    objects_ = std::make_shared<ObjectExtractor>(stitcher.geometry(), viewsOf(stitcher, rig));
+  }
+
   Status write(const BevImage& bev) const {
     cv::Mat picture = bev.image;
     if (network_) {
       const Result<BevLabels> labels = network_->segment(bev);
       if (!labels) return labels.error();
-      picture = drawLabels(bev.image, labels->labels);
+      picture = drawLabels(bev.image, labels->labels, kShare);
+      if (objects_) {
+        const FoundObjects found = objects_->extract(*labels, kAttitudeSigma);
+        picture = drawObjects(picture, bev.geometry, found.objects, untracked(found.agents),
+                              bev.geometry.width_px < kSmall ? 2.0 : 1.0);
+      }
     }
     return writeImage((std::filesystem::path(folder_) / fmt::format("{}.png", bev.t_ns)).string(),
                       picture, {.png = true});
   }
 
  private:
+  static constexpr double kShare = 0.35;  // of the classes' colours
+  static constexpr double kAttitudeSigma =
+      0.0087;                         // rad: the body's attitude is not estimated here
+  static constexpr int kSmall = 600;  // px: smaller pictures are enlarged for texts
   std::string folder_;
   std::shared_ptr<SegmentationNetwork> network_;
+  std::shared_ptr<ObjectExtractor> objects_;
 };
 
 // The frame set of single pictures given as NAME=FILE.
@@ -112,9 +130,10 @@ Status stitchSingle(const BevArguments& arguments) {
   if (!rig) return rig.error();
   const Result<FrameSet> frames = readFrames(*rig, arguments.images);
   if (!frames) return frames.error();
-  const Result<BevWriter> writer = BevWriter::make(arguments);
+  Result<BevWriter> writer = BevWriter::make(arguments);
   if (!writer) return writer.error();
   BevStitcher stitcher(*rig, arguments.options);
+  writer->setViews(stitcher, *rig);
   return writer->write(stitcher.stitch(*frames));
 }
 
@@ -128,7 +147,7 @@ Status stitchSequence(const BevArguments& arguments) {
   Result<OpenedSource> opened = openSource(request);
   if (!opened) return opened.error();
   SensorSource& source = *opened->source;
-  const Result<BevWriter> writer = BevWriter::make(arguments);
+  Result<BevWriter> writer = BevWriter::make(arguments);
   if (!writer) return writer.error();
   BevStitcher stitcher(opened->rig, arguments.options);
   const Result<std::vector<cv::Mat>> masks = readBodyMasks(opened->rig);
@@ -136,6 +155,7 @@ Status stitchSequence(const BevArguments& arguments) {
   for (std::size_t i = 0; i < masks->size(); ++i) {
     if (!(*masks)[i].empty()) stitcher.setMask(static_cast<int>(i), (*masks)[i]);
   }
+  writer->setViews(stitcher, opened->rig);
   ProgressPrinter progress("bev");
   int written = 0;
   while (true) {
@@ -193,7 +213,7 @@ void addBevCommand(CLI::App& app, int& exit_code) {
   command->add_option("--rig", arguments->rig, "rig.yaml for single pictures");
   command->add_option("--image", arguments->images, "CAMERA=FILE, once per camera, with --rig");
   command->add_flag("--overlay", arguments->overlay,
-                    "Lay the classes that the network sees over the pictures");
+                    "Lay the classes and objects that the network sees over the pictures");
   command->add_option("--network", arguments->network,
                       "Class map of another network for --overlay (docs/networks.md)");
   command->add_option("--set", arguments->settings, "An option below, as metres_per_px=0.02");

@@ -35,4 +35,14 @@ struct SegmentationScoreOptions {
 /// Intersection over union of both networks' classes.
 Result<std::unique_ptr<SampleScore>> makeSegmentationScore(const SegmentationScoreOptions& options);
 
+struct ObjectScoreOptions {
+  std::string bev_network;         ///< class map; empty: Parkade's own
+  bool true_labels = false;        ///< features from the true labels instead of the network's
+  std::string pictures;            ///< folder for pictures with found and true objects; empty: none
+  double attitude_sigma = 0.0035;  ///< rad, of the attitude that pictures are stitched with
+};
+
+/// Precision, recall and errors of objects on the floor, pillars, vehicles and people.
+Result<std::unique_ptr<SampleScore>> makeObjectScore(const ObjectScoreOptions& options);
+
 }  // namespace parkade::cli

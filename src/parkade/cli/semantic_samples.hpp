@@ -62,6 +62,7 @@ class SemanticSampler {
   [[nodiscard]] int count() const { return options_.frames; }
   [[nodiscard]] const sim::Simulation& simulation() const { return *simulation_; }
   [[nodiscard]] const BevStitcher& stitcher() const { return *stitcher_; }
+  [[nodiscard]] const sim::Scene& scene() const { return *scene_; }
 
   /// The index-th sample, 0 <= index < count(). In order, since the stitcher's gains follow.
   [[nodiscard]] SemanticSample draw(int index);

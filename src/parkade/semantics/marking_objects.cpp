@@ -187,12 +187,15 @@ bool asLimit(const MarkingPiece& piece, double pixel, const std::vector<MarkingS
 
 Eigen::Matrix3d groundCovariance(const BevViews& views, const BevGeometry& geometry,
                                  const Eigen::Vector2d& p, double sigma, double attitude_sigma) {
-  constexpr double kUneven = 0.02;  // m
+  constexpr double kUneven = 0.02;   // m
+  constexpr double kHeight = 0.005;  // m, 1 sigma, of the body over the floor
   const BevViews::View& view = views.viewAt(geometry, p);
   const Eigen::Matrix2d J = groundTiltJacobian(p - view.foot, view.height);
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   covariance.topLeftCorner<2, 2>() = sigma * sigma * Eigen::Matrix2d::Identity() +
                                      attitude_sigma * attitude_sigma * J * J.transpose();
+  const Eigen::Vector2d stretch = kHeight / view.height * (p - view.foot);
+  covariance.topLeftCorner<2, 2>() += stretch * stretch.transpose();
   covariance(2, 2) = kUneven * kUneven;
   return covariance;
 }

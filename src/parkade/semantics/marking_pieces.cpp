@@ -23,7 +23,7 @@ constexpr std::array<ClassGap, 7> kGaps = {{{SemanticClass::kArrow, 0.28},
                                             {SemanticClass::kPaintedNumber, 0.24},
                                             {SemanticClass::kWheelStop, 0.16}}};
 
-cv::Mat hiddenMask(const cv::Mat& labels) {
+cv::Mat hiddenMask(const cv::Mat& labels, int reach) {
   cv::Mat table(1, 256, CV_8UC1, cv::Scalar(255));
   for (int c = 0; c < kNumSemanticClasses; ++c) {
     if (!hidesGround(static_cast<SemanticClass>(c))) table.at<std::uint8_t>(c) = 0;
@@ -31,7 +31,7 @@ cv::Mat hiddenMask(const cv::Mat& labels) {
   cv::Mat hidden;
   cv::LUT(labels, table, hidden);
   cv::rectangle(hidden, cv::Rect(0, 0, hidden.cols, hidden.rows), cv::Scalar(255), 1);
-  cv::dilate(hidden, hidden, cv::Mat::ones(5, 5, CV_8UC1));
+  cv::dilate(hidden, hidden, cv::Mat::ones(2 * reach + 1, 2 * reach + 1, CV_8UC1));
   return hidden;
 }
 
@@ -71,7 +71,11 @@ void splitClass(const BevLabels& bev, const cv::Mat& hidden, const ClassGap& ent
     constexpr int kTouches = 3;
     piece.semantic_class = entry.semantic_class;
     piece.confidence = sums[i].confidence / (255.0 * static_cast<double>(piece.points.size()));
-    piece.cut = sums[i].at_edge >= kTouches;
+    // What stands up is smeared, and its smear may well reach behind something.
+    const int allowed = entry.semantic_class == SemanticClass::kWheelStop
+                            ? static_cast<int>(piece.points.size() / 5)
+                            : 0;
+    piece.cut = sums[i].at_edge >= kTouches + allowed;
     out.push_back(std::move(piece));
   }
 }
@@ -105,10 +109,17 @@ std::vector<MarkingPiece> findMarkings(const BevLabels& labels, int min_confiden
   }
   std::vector<MarkingPiece> pieces;
   cv::Mat hidden;
+  cv::Mat far_hidden;
   for (const ClassGap& entry : kGaps) {
     if (counts[static_cast<std::size_t>(entry.semantic_class)] < min_pixels) continue;
-    if (hidden.empty()) hidden = hiddenMask(labels.labels);
-    splitClass(labels, hidden, entry, min_confidence, min_pixels, pieces);
+    // A crossing's next bar may lie a gap beyond what is seen.
+    const bool wide = entry.semantic_class == SemanticClass::kCrossing;
+    cv::Mat& mask = wide ? far_hidden : hidden;
+    constexpr double kBarGap = 0.5;  // m
+    const int reach =
+        wide ? static_cast<int>(std::lround(kBarGap / labels.geometry.metres_per_px)) : 2;
+    if (mask.empty()) mask = hiddenMask(labels.labels, reach);
+    splitClass(labels, mask, entry, min_confidence, min_pixels, pieces);
   }
   return pieces;
 }

@@ -126,27 +126,51 @@ void splitCars(Points swept, const Eigen::Vector2d& viewer, double least_depth,
   splitCars(Points(middle, swept.end()), viewer, least_depth, out);
 }
 
-// A car's points on the floor. Wheels stand out of its edge towards the viewer; the rest is the
-// body's lower edge, seen over the floor behind.
+// Range at a step to the side of a swept point; 0 where the sweep ends before.
+double rangeBeside(const Points& swept, const std::vector<double>& ranges,
+                   const Eigen::Vector2d& viewer, std::size_t at, int way) {
+  constexpr double kBeside = 0.4;  // m
+  const Eigen::Vector2d ray = (swept[at] - viewer).normalized();
+  for (auto i = static_cast<std::ptrdiff_t>(at) + way;
+       i >= 0 && i < static_cast<std::ptrdiff_t>(swept.size()); i += way) {
+    const auto k = static_cast<std::size_t>(i);
+    if (std::abs(cross(ray, swept[k] - swept[at])) > kBeside) return ranges[k];
+  }
+  return 0.0;
+}
+
+// A car's points on the floor. Wheels stand out of its edge towards the viewer like teeth; the rest
+// is the body's lower edge, seen over the floor behind.
 Points onFloor(const Points& swept, const BevViews& views, const BevGeometry& geometry,
                double clearance) {
-  constexpr double kBeside = 0.6;  // m
+  constexpr double kTooth = 1.1;  // how much farther away the body is seen beside a wheel
+  constexpr double kNoBulge = 1.04;
   std::vector<double> ranges;
   for (const Eigen::Vector2d& p : swept) {
     ranges.push_back((p - views.viewAt(geometry, p).foot).norm());
+  }
+  std::vector<std::size_t> wheels;
+  for (std::size_t i = 0; i < swept.size(); ++i) {
+    const double left = rangeBeside(swept, ranges, geometry.center, i, 1);
+    const double right = rangeBeside(swept, ranges, geometry.center, i, -1);
+    const double most = std::max(left, right);
+    const double least = left > 0.0 && right > 0.0 ? std::min(left, right) : most;
+    if (most > kTooth * ranges[i] && least > kNoBulge * ranges[i]) wheels.push_back(i);
   }
   Points out;
   for (std::size_t i = 0; i < swept.size(); ++i) {
     const BevViews::View& view = views.viewAt(geometry, swept[i]);
     const double nearer = clearance / std::max(view.height, 2.0 * clearance);
-    std::vector<double> beside;
-    for (std::size_t k = 0; k < swept.size(); ++k) {
-      if ((swept[k] - swept[i]).norm() < kBeside + 0.3 * ranges[i]) beside.push_back(ranges[k]);
+    double range = (1.0 - nearer) * ranges[i];
+    // A body does not reach far beyond the wheels beside.
+    constexpr double kBeside = 0.8;   // m
+    constexpr double kBeyond = 0.15;  // m
+    for (const std::size_t k : wheels) {
+      if ((swept[k] - swept[i]).norm() < kBeside + ranges[i] - ranges[k]) {
+        range = std::max(range, std::min(ranges[i], ranges[k] - kBeyond));
+      }
     }
-    const auto upper = beside.begin() + static_cast<std::ptrdiff_t>((2 * beside.size()) / 3);
-    std::nth_element(beside.begin(), upper, beside.end());
-    const bool wheel = ranges[i] < *upper * (1.0 - 0.6 * nearer);
-    out.push_back(wheel ? swept[i] : view.foot + (1.0 - nearer) * (swept[i] - view.foot));
+    out.push_back(view.foot + range / std::max(1e-6, ranges[i]) * (swept[i] - view.foot));
   }
   return out;
 }

@@ -14,7 +14,7 @@ struct AgentOptions {
   int min_confidence = 100;
   int min_pixels = 4;
   double body_clearance_m = 0.2;
-  double notch_m = 0.22;
+  double notch_m = 0.14;
   double sigma_px = 1.5;
 
   void visit(OptionVisitor& v) {
