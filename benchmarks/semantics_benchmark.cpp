@@ -1,11 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The Parkade authors
 // SPDX-License-Identifier: Apache-2.0
-// Time of the segmentation networks on one thread: preparing the input, the network, the labels.
+// Time of the segmentation networks on one thread (preparing the input, the network, the labels),
+// and of the features that are drawn from labels.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <cmath>
 #include <opencv2/core.hpp>
 #include <string>
 
+#include "parkade/semantics/agent_tracker.hpp"
+#include "parkade/semantics/object_extraction.hpp"
 #include "parkade/semantics/segmentation.hpp"
 
 namespace parkade {
@@ -41,6 +46,69 @@ void segmentView(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(network->segmentView(image));
 }
 BENCHMARK(segmentView)->Unit(benchmark::kMillisecond);
+
+// A busy aisle: rows of cars with pillars between them on both sides, arrows, a crossing, a limit,
+// people; upright things smeared away from the picture's middle.
+BevLabels busyAisle() {
+  BevLabels labels;
+  labels.geometry.center = {1.4, 0.0};
+  const BevGeometry& g = labels.geometry;
+  labels.labels = cv::Mat(g.height_px, g.width_px, CV_8UC1, cv::Scalar(1));
+  labels.confidence = cv::Mat(g.height_px, g.width_px, CV_8UC1, cv::Scalar(230));
+  const auto classAt = [](const Eigen::Vector2d& p, const Eigen::Vector2d& foot) {
+    const Eigen::Vector2d d = p - foot;
+    if (std::abs(d.x()) < 2.4 && std::abs(d.y()) < 0.95) return SemanticClass::kUnknown;
+    for (double share = 1.0; share > 0.1; share *= 0.9) {
+      const Eigen::Vector2d q = foot + share * d;
+      const double along = q.x() - 2.6 * std::floor(q.x() / 2.6);
+      if (std::abs(q.y()) > 3.6 && std::abs(q.y()) < 8.0 && along > 0.4 && along < 2.2) {
+        return SemanticClass::kVehicle;
+      }
+      const double bay = q.x() - 7.8 * std::floor(q.x() / 7.8);
+      if (std::abs(std::abs(q.y()) - 4.6) < 0.35 && bay < 0.36) return SemanticClass::kPillar;
+      if ((q - Eigen::Vector2d(6.0, 2.0)).norm() < 0.25) return SemanticClass::kPedestrian;
+    }
+    for (const double x : {-4.5, -1.0, 3.0, 6.5}) {
+      for (const double y : {-1.7, 1.7}) {
+        const double along = p.x() - x;
+        const double across = std::abs(p.y() - y);
+        const bool shaft = along > -1.2 && along < 0.4 && across < 0.09;
+        const bool head = along >= 0.4 && along < 1.2 && across < 0.28 * (1.2 - along) / 0.8;
+        if (shaft || head) return SemanticClass::kArrow;
+      }
+    }
+    if (p.x() > 8.0 && p.x() < 8.7 && std::fmod(p.y() + 9.0, 0.9) < 0.45) {
+      return SemanticClass::kCrossing;
+    }
+    const double ring = (p - Eigen::Vector2d(-4.5, 0.0)).norm();
+    if (ring > 0.75 && ring < 0.9) return SemanticClass::kSpeedLimitPaint;
+    return SemanticClass::kFloor;
+  };
+  for (int v = 0; v < g.height_px; ++v) {
+    for (int u = 0; u < g.width_px; ++u) {
+      labels.labels.at<std::uint8_t>(v, u) =
+          static_cast<std::uint8_t>(classAt(g.toGround(Eigen::Vector2d(u, v)), g.center));
+    }
+  }
+  return labels;
+}
+
+void extractObjects(benchmark::State& state) {
+  cv::setNumThreads(1);
+  const BevLabels labels = busyAisle();
+  const ObjectExtractor extractor(labels.geometry, BevViews::fromMiddle(labels.geometry));
+  AgentTracker tracker({});
+  TimeNs t_ns = 0;
+  std::size_t found = 0;
+  for (auto _ : state) {
+    const FoundObjects objects = extractor.extract(labels, 0.003);
+    benchmark::DoNotOptimize(tracker.update(objects.agents, SE2(), t_ns));
+    found = objects.objects.size() + objects.agents.size();
+    t_ns += kNsPerSecond / 10;
+  }
+  state.counters["found"] = static_cast<double>(found);
+}
+BENCHMARK(extractObjects)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace parkade

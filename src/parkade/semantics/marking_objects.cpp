@@ -87,8 +87,9 @@ bool asBox(const MarkingPiece& piece, double pixel, ObjectObservation& object) {
   return true;
 }
 
+// sigma_along: m, what the shape leaves open along the heading.
 bool asArrow(const MarkingPiece& piece, double pixel, const std::vector<MarkingShape>& shapes,
-             const MarkingOptions& options, ObjectObservation& object) {
+             const MarkingOptions& options, ObjectObservation& object, double& sigma_along) {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& p : piece.points) mean += p;
   mean /= static_cast<double>(piece.points.size());
@@ -128,6 +129,8 @@ bool asArrow(const MarkingPiece& piece, double pixel, const std::vector<MarkingS
   const Eigen::Vector2d x = fit.length * ahead;
   const Eigen::Vector2d y = shape.width() * fit.length * left;
   object.outline = {tail, tail + x, tail + x + y, tail + y};
+  // Worn ends, or others than the shape's, leave its length open.
+  sigma_along = 0.08 * fit.length * (1.0 - fit.overlap);
   // Half covered by its shape is half worn, or something else: told less surely.
   object.confidence = piece.confidence * std::min(1.0, fit.overlap / 0.7);
   return true;
@@ -214,8 +217,9 @@ std::vector<ObjectObservation> MarkingExtractor::extract(const BevLabels& labels
     ObjectObservation object;
     object.semantic_class = piece.semantic_class;
     bool found = false;
+    double sigma_along = 0.0;
     if (piece.semantic_class == SemanticClass::kArrow) {
-      found = asArrow(piece, pixel, arrows_, options_, object);
+      found = asArrow(piece, pixel, arrows_, options_, object, sigma_along);
     } else if (piece.semantic_class == SemanticClass::kSpeedLimitPaint) {
       found = asLimit(piece, pixel, limits_, options_, object);
     } else {
@@ -224,6 +228,9 @@ std::vector<ObjectObservation> MarkingExtractor::extract(const BevLabels& labels
     if (!found) continue;
     object.covariance = groundCovariance(views, labels.geometry, object.position.head<2>(),
                                          options_.sigma_px * pixel, attitude_sigma);
+    const Eigen::Vector2d ahead(std::cos(object.heading), std::sin(object.heading));
+    object.covariance.topLeftCorner<2, 2>() +=
+        sigma_along * sigma_along * ahead * ahead.transpose();
     objects.push_back(std::move(object));
   }
   return objects;
