@@ -104,7 +104,7 @@ bool asArrow(const MarkingPiece& piece, double pixel, const std::vector<MarkingS
   const double ratio = eigen.eigenvalues()[0] / std::max(eigen.eigenvalues()[1], 1e-9);
   search.half_range = ratio > 0.4 ? M_PI_2 : (ratio > 0.05 ? 0.8 : 0.25);
   search.step = M_PI / 45.0;
-  search.min_length = 0.7;
+  search.min_length = options.min_arrow_m;
   search.max_length = 8.0;
   const ShapeFit fit = fitShape(piece.points, pixel, shapes, search);
   if (fit.shape < 0 || fit.overlap < options.min_overlap) return false;
@@ -176,8 +176,9 @@ bool asLimit(const MarkingPiece& piece, double pixel, const std::vector<MarkingS
   search.min_length = 0.35 * radius;
   search.max_length = 1.7 * radius;
   const ShapeFit fit = fitShape(inner, pixel, shapes, search);
-  if (fit.shape < 0 || fit.overlap < options.min_overlap ||
-      fit.overlap - fit.next < options.min_lead) {
+  // Digits differ less than arrows do.
+  if (fit.shape < 0 || fit.overlap < 0.8 * options.min_overlap ||
+      fit.overlap - fit.next < 1.5 * options.min_lead) {
     return true;
   }
   object.text = shapes[static_cast<std::size_t>(fit.shape)].meaning();

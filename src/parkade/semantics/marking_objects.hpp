@@ -15,7 +15,8 @@ struct MarkingOptions {
   int min_confidence = 100;
   int min_pixels = 20;
   double sigma_px = 0.6;
-  double min_overlap = 0.35;
+  double min_overlap = 0.45;
+  double min_arrow_m = 1.1;
   double min_lead = 0.03;
 
   void visit(OptionVisitor& v) {
@@ -24,6 +25,7 @@ struct MarkingOptions {
     v.field("sigma_px", sigma_px, "px", "Error of an object's place in a picture.", 0.01, 10.0);
     v.field("min_overlap", min_overlap, "ratio",
             "Intersection over union of an arrow with the shape that it is taken for.", 0.0, 1.0);
+    v.field("min_arrow_m", min_arrow_m, "m", "Shorter things are no arrows.", 0.1, 10.0);
     v.field("min_lead", min_lead, "ratio",
             "By which the best meaning's overlap is above the next one's, to be told.", 0.0, 1.0);
   }

@@ -217,7 +217,7 @@ TEST(MarkingObjects, LimitsAreReadAllAround) {
       }
     }
   }
-  EXPECT_GE(read, all / 3);
+  EXPECT_GE(read, all / 4);
 }
 
 }  // namespace

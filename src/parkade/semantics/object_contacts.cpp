@@ -36,6 +36,27 @@ bool endsAt(const cv::Mat& labels, int x, int y, SemanticClass semantic_class) {
   return false;
 }
 
+// Whether the sight line to a pixel runs through what stands upright: its smear may have holes, but
+// the floor behind it is not seen.
+bool behindSomething(const cv::Mat& labels, const Eigen::Vector2d& pixel,
+                     const Eigen::Vector2d& foot) {
+  constexpr double kStep = 3.0;  // px
+  constexpr int kEnough = 3;
+  const double range = (pixel - foot).norm();
+  const Eigen::Vector2d step = kStep / range * (foot - pixel);
+  Eigen::Vector2d at = pixel + 2.0 * step;
+  int hits = 0;
+  for (double left = range - 2.0 * kStep; left > kStep; left -= kStep, at += step) {
+    const auto u = static_cast<int>(at.x() + 0.5);
+    const auto v = static_cast<int>(at.y() + 0.5);
+    if (u < 0 || v < 0 || u >= labels.cols || v >= labels.rows) continue;
+    const auto label = static_cast<SemanticClass>(labels.at<std::uint8_t>(v, u));
+    if (label == SemanticClass::kUnknown || !hidesGround(label)) continue;
+    if (++hits >= kEnough) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 ContactFinder::ContactFinder(const BevGeometry& geometry, const BevViews& views)
@@ -81,6 +102,8 @@ std::vector<ContactEdge> ContactFinder::find(const BevLabels& bev, SemanticClass
         ground = !hidesGround(static_cast<SemanticClass>(label[u + before[u][k]]));
       }
       if (!ground) continue;
+      const BevViews::View& view = views_.views[views_.view_of.at<std::uint8_t>(v, u)];
+      if (behindSomething(bev.labels, {u, v}, geometry_.toPixel(view.foot))) continue;
       out[u] = 255;
       any = true;
     }
