@@ -78,6 +78,13 @@ std::int64_t PoseFilter::addAnchor() {
   return next_id_++;
 }
 
+std::int64_t PoseFilter::addHeadingReference(double sigma) {
+  const std::int64_t anchor = addAnchor();
+  const Eigen::Index angle = P_.rows() - kErrors + 2;
+  P_(angle, angle) += sigma * sigma;
+  return anchor;
+}
+
 bool PoseFilter::hasAnchor(std::int64_t anchor) const {
   return std::binary_search(ids_.begin(), ids_.end(), anchor);
 }
@@ -191,6 +198,18 @@ FilterUpdate PoseFilter::updateHeight(std::int64_t anchor, double dz, double sig
   const double predicted = poses_[0].z - poses_[static_cast<std::size_t>(a)].z;
   const Eigen::MatrixXd H = relativeJacobian(a, 0).bottomRows<1>();
   return correct(Eigen::VectorXd::Constant(1, dz - predicted), H,
+                 Eigen::MatrixXd::Constant(1, 1, sigma * sigma), gate_probability);
+}
+
+FilterUpdate PoseFilter::updateTurn(std::int64_t anchor, double angle, double sigma,
+                                    double gate_probability) {
+  const Eigen::Index a = indexOf(anchor);
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(1, P_.cols());
+  H(0, 2) = 1.0;
+  H(0, kErrors * a + 2) = -1.0;
+  const double turned = poses_[0].T_world_vehicle.angle() -
+                        poses_[static_cast<std::size_t>(a)].T_world_vehicle.angle();
+  return correct(Eigen::VectorXd::Constant(1, wrapAngle(angle - turned)), H,
                  Eigen::MatrixXd::Constant(1, 1, sigma * sigma), gate_probability);
 }
 

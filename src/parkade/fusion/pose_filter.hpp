@@ -40,6 +40,10 @@ class PoseFilter {
 
   /// Keeps the present pose as an anchor.
   std::int64_t addAnchor();
+  /// Keeps the present heading as an anchor of what points the same way all the time, such as a
+  /// garage's axes, which was read off with an error of sigma: unlike the readings' own errors it
+  /// stays the same, and the filter learns it.
+  std::int64_t addHeadingReference(double sigma);
   /// Forgets an anchor; the rest keeps what it learned through it.
   void removeAnchor(std::int64_t anchor);
 
@@ -53,6 +57,8 @@ class PoseFilter {
                              const Eigen::Matrix3d& information, double gate_probability);
   /// The car stands dz above where it stood at the anchor.
   FilterUpdate updateHeight(std::int64_t anchor, double dz, double sigma, double gate_probability);
+  /// The car has turned by angle since the anchor.
+  FilterUpdate updateTurn(std::int64_t anchor, double angle, double sigma, double gate_probability);
   /// The heading in the world.
   FilterUpdate updateHeading(double angle, double sigma, double gate_probability);
   /// The whole pose in the world, as a saved map tells it; information may be singular.

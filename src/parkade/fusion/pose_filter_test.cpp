@@ -198,6 +198,42 @@ TEST(PoseFilter, MeanNeesLiesInsideIts95PercentBand) {
   EXPECT_LT(mean.error, 0.5 * mean.error_odometry);
 }
 
+// Axes that are read off wrongly by the same angle all the time: the heading stops drifting, and
+// the filter does not get surer than that angle allows.
+TEST(PoseFilter, HeadingReferenceStopsTheDriftAndKeepsItsOwnError) {
+  constexpr int kSeeds = 40;
+  constexpr double kReference = 2e-3;
+  constexpr double kReading = 4e-3;
+  constexpr double kDrift = 1e-3;  // per step
+  double nees = 0.0;
+  double square = 0.0;
+  double sigma = 0.0;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    Random random(seed);
+    PoseFilter filter;
+    double truth = 0.0;
+    const std::int64_t reference = filter.addHeadingReference(kReference);
+    const double bias = kReference * random.normal();
+    for (int k = 0; k < 300; ++k) {
+      const double turn = 0.01 * std::sin(0.05 * k);
+      truth += turn;
+      filter.predict(SE2(turn + kDrift * random.normal(), {0.1, 0.0}), 0.0,
+                     Eigen::Vector4d(1e-8, 1e-8, kDrift * kDrift, 1e-8).asDiagonal());
+      filter.updateTurn(reference, truth + bias + kReading * random.normal(), kReading, 0.99999);
+    }
+    const double error = filter.pose().T_world_vehicle.angle() - truth;
+    nees += error * error / filter.covariance()(2, 2) / kSeeds;
+    square += error * error / kSeeds;
+    sigma = std::sqrt(filter.covariance()(2, 2));
+  }
+  std::printf("heading by axes: error %.5f, sigma %.5f, NEES %.2f\n", std::sqrt(square), sigma,
+              nees);
+  EXPECT_GT(nees, chiSquareQuantile(kSeeds, 0.025) / kSeeds);
+  EXPECT_LT(nees, chiSquareQuantile(kSeeds, 0.975) / kSeeds);
+  EXPECT_LT(std::sqrt(square), 0.3 * kDrift * std::sqrt(300.0));
+  EXPECT_GT(sigma, 0.3 * kReference);
+}
+
 TEST(PoseFilter, CovarianceStaysSymmetricAndPositive) {
   PoseFilter filter;
   Random random(9);
