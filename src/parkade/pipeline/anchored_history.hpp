@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "parkade/fusion/pose_filter.hpp"
+#include "parkade/types/pose_estimate.hpp"
+#include "parkade/types/trajectory.hpp"
+
+namespace parkade {
+
+/// All poses of an odometry, hung on anchors that move afterwards: what a run's final trajectory is
+/// made of.
+class AnchoredHistory {
+ public:
+  /// An anchor at the odometry's last pose; poses from there on lie between it and the next.
+  void beginAnchor(std::int64_t anchor);
+  void add(const PoseEstimate& odometry);
+
+  /// Every pose: the odometry's motion since the anchor before it, and back from the one after it,
+  /// mixed by the share of poses in between; so that nothing jumps at anchors.
+  [[nodiscard]] Trajectory trajectory(const std::function<GroundPose(std::int64_t)>& poseOf) const;
+
+ private:
+  struct Anchor {
+    std::int64_t id = 0;
+    std::size_t at = 0;  // index of its pose
+  };
+  std::vector<StampedPose> poses_;
+  std::vector<Anchor> anchors_;
+};
+
+}  // namespace parkade

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "parkade/mapping/parking_map.hpp"
+#include "parkade/types/pose_estimate.hpp"
+#include "parkade/types/semantic_features.hpp"
+#include "parkade/types/trajectory.hpp"
+
+namespace parkade {
+
+/// Corrects an odometry by semantic features and makes a map. Eats poses and features, never
+/// images; the same calls give the same bytes. Not thread-safe.
+class SemanticMapper {
+ public:
+  virtual ~SemanticMapper() = default;
+
+  /// The odometry's pose of a frame set. Gives the corrected pose, T_world_vehicle in its place of
+  /// T_odom_vehicle; the odometry's own while that has not started.
+  virtual PoseEstimate addOdometry(const PoseEstimate& odometry) = 0;
+  /// The features of the frame set that was last given to addOdometry(). Gives its pose anew.
+  virtual PoseEstimate addSemantics(const SemanticFrame& frame) = 0;
+
+  /// Ends a run: takes up all corrections.
+  virtual void finish() = 0;
+  /// The map as it is; finish() first, at the end of a run.
+  [[nodiscard]] virtual ParkingMap map(const std::string& name) const = 0;
+  /// Every frame set since the start, with all that came after it.
+  [[nodiscard]] virtual Trajectory finalTrajectory() const = 0;
+};
+
+}  // namespace parkade
