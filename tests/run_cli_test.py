@@ -160,10 +160,13 @@ class RunEurocTest(unittest.TestCase):
         self.assertEqual(result.returncode, 1)
         self.assertIn("cam7", result.stderr)
 
-    def test_other_methods_say_that_they_are_missing(self):
-        result = parkade("run", EUROC, "--out", self.folder / "x", "--method", "semantic")
-        self.assertEqual(result.returncode, 1)
-        self.assertIn("not available yet", result.stderr)
+    def test_methods_that_need_wheels_say_so(self):
+        for method in ("semantic", "avp-slam"):
+            out = self.folder / method
+            result = parkade("run", EUROC, "--out", out, "--method", method, "--duration", 2)
+            self.assertEqual(result.returncode, 1)
+            self.assertIn("no pose", result.stderr)
+            self.assertIn("no wheel speed", (out / "health.csv").read_text(encoding="utf-8"))
 
     def test_fused_writes_a_map_and_the_same_bytes_on_any_number_of_threads(self):
         runs = []

@@ -59,20 +59,24 @@ Status configure(const RunArguments& arguments, PipelineOptions& options) {
   return {};
 }
 
+RunMethod methodOf(const std::string& name) {
+  if (name == "fused") return RunMethod::kFused;
+  if (name == "semantic") return RunMethod::kSemantic;
+  return name == "avp-slam" ? RunMethod::kAvpSlam : RunMethod::kVis;
+}
+
 Status runSequence(const RunArguments& arguments) {
-  if (arguments.method != "vis" && arguments.method != "fused") {
-    return Error{fmt::format("--method {}: not available yet in this build; use fused or vis",
-                             arguments.method)};
-  }
   PipelineOptions options;
   if (Status status = configure(arguments, options); !status) return status;
+  const RunMethod method = methodOf(arguments.method);
   SourceRequest request = arguments.source;
+  // The paper's semantic method has one camera: the front one, where the user names no other.
+  if (method == RunMethod::kSemantic && request.cameras.empty()) request.cameras = "cam0";
   request.decode_threads = arguments.threads > 1 ? 1 : 0;
   request.gray = arguments.method == "vis";  // networks want colour
   Result<OpenedSource> opened = openSource(request);
   if (!opened) return opened.error();
   if (Status status = prepareRunFolder(arguments.out, arguments.force); !status) return status;
-  const RunMethod method = arguments.method == "fused" ? RunMethod::kFused : RunMethod::kVis;
   auto run = MappingRun::create(opened->rig, options, arguments.threads, method);
   if (!run) return run.error();
 
@@ -89,7 +93,7 @@ Status runSequence(const RunArguments& arguments) {
 
   RunDescription description;
   description.source = arguments.source.spec;
-  description.cameras = arguments.source.cameras;
+  description.cameras = request.cameras;
   for (const RigCamera& camera : opened->rig.cameras) {
     description.camera_names.push_back(camera.name);
   }
@@ -124,8 +128,11 @@ void addRunCommand(CLI::App& app, int& exit_code) {
   command->add_option("-o,--out", a->out, "Folder to write, made where it is not there")
       ->required();
   command
-      ->add_option("--method", a->method,
-                   "fused (key points and semantics), semantic, vis (key points only), avp-slam")
+      ->add_option(
+          "--method", a->method,
+          "fused (key points and semantics), vis (key points only), semantic (one camera's "
+          "markings, wheels and gyroscope), avp-slam (that scheme; surround markings, "
+          "wheels and gyroscope)")
       ->check(CLI::IsMember({"fused", "semantic", "vis", "avp-slam"}))
       ->capture_default_str();
   command->add_flag("--final", a->with_final,

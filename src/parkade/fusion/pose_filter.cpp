@@ -90,6 +90,7 @@ bool PoseFilter::hasAnchor(std::int64_t anchor) const {
 }
 
 Eigen::Index PoseFilter::indexOf(std::int64_t anchor) const {
+  if (anchor == kCar) return 0;
   const auto it = std::lower_bound(ids_.begin(), ids_.end(), anchor);
   PARKADE_CHECK(it != ids_.end() && *it == anchor, "the filter holds no anchor {}", anchor);
   return 1 + (it - ids_.begin());
@@ -124,8 +125,8 @@ Eigen::MatrixXd PoseFilter::relativeJacobian(Eigen::Index a, Eigen::Index b) con
   return H;
 }
 
-PoseFilter::Matrix4 PoseFilter::relativeCovariance(std::int64_t anchor) const {
-  const Eigen::MatrixXd H = relativeJacobian(indexOf(anchor), 0);
+PoseFilter::Matrix4 PoseFilter::relativeCovariance(std::int64_t anchor, std::int64_t of) const {
+  const Eigen::MatrixXd H = relativeJacobian(indexOf(anchor), indexOf(of));
   return H * P_ * H.transpose();
 }
 
@@ -193,10 +194,12 @@ FilterUpdate PoseFilter::updateBetween(std::int64_t a, std::int64_t b, const SE2
 }
 
 FilterUpdate PoseFilter::updateHeight(std::int64_t anchor, double dz, double sigma,
-                                      double gate_probability) {
+                                      double gate_probability, std::int64_t of) {
   const Eigen::Index a = indexOf(anchor);
-  const double predicted = poses_[0].z - poses_[static_cast<std::size_t>(a)].z;
-  const Eigen::MatrixXd H = relativeJacobian(a, 0).bottomRows<1>();
+  const Eigen::Index b = indexOf(of);
+  const double predicted =
+      poses_[static_cast<std::size_t>(b)].z - poses_[static_cast<std::size_t>(a)].z;
+  const Eigen::MatrixXd H = relativeJacobian(a, b).bottomRows<1>();
   return correct(Eigen::VectorXd::Constant(1, dz - predicted), H,
                  Eigen::MatrixXd::Constant(1, 1, sigma * sigma), gate_probability);
 }
@@ -213,10 +216,13 @@ FilterUpdate PoseFilter::updateTurn(std::int64_t anchor, double angle, double si
                  Eigen::MatrixXd::Constant(1, 1, sigma * sigma), gate_probability);
 }
 
-FilterUpdate PoseFilter::updateHeading(double angle, double sigma, double gate_probability) {
+FilterUpdate PoseFilter::updateHeading(double angle, double sigma, double gate_probability,
+                                       std::int64_t of) {
+  const Eigen::Index b = indexOf(of);
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(1, P_.cols());
-  H(0, 2) = 1.0;
-  const double innovation = wrapAngle(angle - poses_[0].T_world_vehicle.angle());
+  H(0, kErrors * b + 2) = 1.0;
+  const double innovation =
+      wrapAngle(angle - poses_[static_cast<std::size_t>(b)].T_world_vehicle.angle());
   return correct(Eigen::VectorXd::Constant(1, innovation), H,
                  Eigen::MatrixXd::Constant(1, 1, sigma * sigma), gate_probability);
 }

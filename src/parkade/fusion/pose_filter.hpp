@@ -31,6 +31,8 @@ struct FilterUpdate {
 class PoseFilter {
  public:
   using Matrix4 = Eigen::Matrix4d;
+  /// In the place of an anchor: the car as it is now.
+  static constexpr std::int64_t kCar = -1;
 
   explicit PoseFilter(const GroundPose& pose = {}, const Matrix4& covariance = Matrix4::Zero());
 
@@ -55,12 +57,14 @@ class PoseFilter {
   /// The same between two anchors: T_a_b.
   FilterUpdate updateBetween(std::int64_t a, std::int64_t b, const SE2& T_a_b,
                              const Eigen::Matrix3d& information, double gate_probability);
-  /// The car stands dz above where it stood at the anchor.
-  FilterUpdate updateHeight(std::int64_t anchor, double dz, double sigma, double gate_probability);
+  /// The car (or another anchor) stands dz above where it stood at the anchor.
+  FilterUpdate updateHeight(std::int64_t anchor, double dz, double sigma, double gate_probability,
+                            std::int64_t of = kCar);
   /// The car has turned by angle since the anchor.
   FilterUpdate updateTurn(std::int64_t anchor, double angle, double sigma, double gate_probability);
-  /// The heading in the world.
-  FilterUpdate updateHeading(double angle, double sigma, double gate_probability);
+  /// The heading in the world, of the car or of an anchor.
+  FilterUpdate updateHeading(double angle, double sigma, double gate_probability,
+                             std::int64_t of = kCar);
   /// The whole pose in the world, as a saved map tells it; information may be singular.
   FilterUpdate updateAbsolute(const SE2& T_world_vehicle, const Eigen::Matrix3d& information,
                               double gate_probability);
@@ -70,8 +74,9 @@ class PoseFilter {
   [[nodiscard]] bool hasAnchor(std::int64_t anchor) const;
   [[nodiscard]] const GroundPose& anchor(std::int64_t anchor) const;
   [[nodiscard]] const std::vector<std::int64_t>& anchors() const { return ids_; }
-  /// Covariance of T_anchor_vehicle (right perturbation) and of the height between them.
-  [[nodiscard]] Matrix4 relativeCovariance(std::int64_t anchor) const;
+  /// Covariance of T_anchor_vehicle (right perturbation) and of the height between them; of: the
+  /// car, or another anchor in its place.
+  [[nodiscard]] Matrix4 relativeCovariance(std::int64_t anchor, std::int64_t of = kCar) const;
 
  private:
   [[nodiscard]] Eigen::Index indexOf(std::int64_t anchor) const;  ///< pose number; throws if gone

@@ -19,9 +19,10 @@ GroundPose carried(const GroundPose& anchor, const SE3& T_odom_anchor, const SE3
 
 }  // namespace
 
-void AnchoredHistory::beginAnchor(std::int64_t anchor) {
-  PARKADE_CHECK(!poses_.empty(), "an anchor before the first pose");
-  anchors_.push_back({anchor, poses_.size() - 1});
+void AnchoredHistory::beginAnchor(std::int64_t anchor, std::size_t at) {
+  PARKADE_CHECK(at < poses_.size() && (anchors_.empty() || at >= anchors_.back().at),
+                "an anchor at pose {} of {}", at, poses_.size());
+  anchors_.push_back({anchor, at});
 }
 
 void AnchoredHistory::add(const PoseEstimate& odometry) {
@@ -44,6 +45,7 @@ Trajectory AnchoredHistory::trajectory(
     GroundPose pose = from(next == 0 ? 0 : next - 1);
     if (next > 0 && next < anchors_.size()) {
       const GroundPose back = from(next);
+      // next is the first anchor beyond i, so that the two differ.
       const double share = static_cast<double>(i - anchors_[next - 1].at) /
                            static_cast<double>(anchors_[next].at - anchors_[next - 1].at);
       const Eigen::Vector3d step = (pose.T_world_vehicle.inverse() * back.T_world_vehicle).log();

@@ -16,9 +16,11 @@ namespace parkade {
 /// made of.
 class AnchoredHistory {
  public:
-  /// An anchor at the odometry's last pose; poses from there on lie between it and the next.
-  void beginAnchor(std::int64_t anchor);
+  /// An anchor at the pose with this index; poses from there on lie between it and the next. Call
+  /// it in the order of the poses.
+  void beginAnchor(std::int64_t anchor, std::size_t at);
   void add(const PoseEstimate& odometry);
+  [[nodiscard]] std::size_t size() const { return poses_.size(); }
 
   /// Every pose: the odometry's motion since the anchor before it, and back from the one after it,
   /// mixed by the share of poses in between; so that nothing jumps at anchors.

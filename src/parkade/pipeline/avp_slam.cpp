@@ -5,7 +5,9 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <optional>
+#include <utility>
 
 #include "parkade/core/check.hpp"
 #include "parkade/core/log.hpp"
@@ -39,15 +41,27 @@ struct LocalPoints {
 
 class AvpSlam::Impl {
  public:
+  struct View {
+    PoseEstimate odometry;
+    double travelled = 0.0;
+    std::size_t at = 0;  // pose of the history
+  };
+
   explicit Impl(const AvpSlamOptions& o) : options(o) {}
 
   [[nodiscard]] PoseEstimate estimate() const;
   void predict(const PoseEstimate& now);
-  void beginLocalMap();
-  void localise(const PointCloud& seen);
-  void correct(const SE2& measured);
+  void beginLocalMap(const View& view);
+  void localise(const PointCloud& seen, const View& view);
+  void correct(const SE2& measured, const SE2& at);
   void closeLoops();
-  [[nodiscard]] const LocalPoints* mapUnderTheCar() const;
+  [[nodiscard]] const LocalPoints* mapUnder(const SE2& at) const;
+  /// The present estimate of where a view was taken.
+  [[nodiscard]] SE2 poseOf(const View& view) const {
+    const SE2 T_view_now = SE2::fromSE3(view.odometry.T_odom_vehicle).inverse() *
+                           SE2::fromSE3(odometry->T_odom_vehicle);
+    return pose * T_view_now.inverse();
+  }
   [[nodiscard]] PoseGraphEdge edgeBetween(const LocalPoints& a, const LocalPoints& b,
                                           const SE2& T_a_b, EdgeKind kind, double sigma_m,
                                           double sigma_rad) const;
@@ -56,6 +70,7 @@ class AvpSlam::Impl {
   std::optional<PoseEstimate> odometry;
   SE2 pose;                                                // of the EKF
   Eigen::Matrix3d P = 1e-8 * Eigen::Matrix3d::Identity();  // right perturbation
+  std::deque<View> views;
   double travelled = 0.0;
   double last_localised = -1e9;
   std::vector<LocalPoints> maps;  // the last one is open
@@ -112,58 +127,61 @@ PoseGraphEdge AvpSlam::Impl::edgeBetween(const LocalPoints& a, const LocalPoints
   return edge;
 }
 
-void AvpSlam::Impl::beginLocalMap() {
+void AvpSlam::Impl::beginLocalMap(const View& view) {
   LocalPoints map(options.cell_m);
   map.id = static_cast<std::int64_t>(maps.size());
-  map.t_ns = odometry->t_ns;
-  map.T_map = pose;
-  map.odometry_3d = odometry->T_odom_vehicle;
+  map.t_ns = view.odometry.t_ns;
+  map.T_map = poseOf(view);
+  map.odometry_3d = view.odometry.T_odom_vehicle;
   map.odometry = SE2::fromSE3(map.odometry_3d);
-  map.begin_m = travelled;
+  map.begin_m = view.travelled;
   if (!maps.empty()) {
     const LocalPoints& before = maps.back();
-    const double way = std::max(0.5, travelled - before.begin_m);
+    const double way = std::max(0.5, view.travelled - before.begin_m);
     edges.push_back(edgeBetween(before, map, before.odometry.inverse() * map.odometry,
                                 EdgeKind::kOdometry, options.odometry.translation * std::sqrt(way),
                                 options.odometry.yaw_deg * kDegree * std::sqrt(way)));
   }
   maps.push_back(std::move(map));
-  history.beginAnchor(maps.back().id);
+  history.beginAnchor(maps.back().id, view.at);
   ++statistics.local_maps;
 }
 
-const LocalPoints* AvpSlam::Impl::mapUnderTheCar() const {
+const LocalPoints* AvpSlam::Impl::mapUnder(const SE2& at) const {
   // The oldest one: it drifted least.
   for (std::size_t k = 0; k + 1 < maps.size(); ++k) {
-    if (maps[k].covers(pose.translation(), 0.0)) return &maps[k];
+    if (maps[k].covers(at.translation(), 0.0)) return &maps[k];
   }
   return nullptr;
 }
 
-void AvpSlam::Impl::correct(const SE2& measured) {
+void AvpSlam::Impl::correct(const SE2& measured, const SE2& at) {
   Eigen::Matrix3d R = Eigen::Matrix3d::Zero();
   R.diagonal() << std::pow(options.sigma_m, 2), std::pow(options.sigma_m, 2),
       std::pow(options.sigma_deg * kDegree, 2);
-  const Eigen::Vector3d innovation = (pose.inverse() * measured).log();
+  const Eigen::Vector3d innovation = (at.inverse() * measured).log();
   const Eigen::Matrix3d S = P + R;
   const Eigen::LLT<Eigen::Matrix3d> S_llt(S);
   if (innovation.dot(S_llt.solve(innovation)) > chiSquareQuantile(3, options.gate_probability)) {
     return;
   }
   const Eigen::Matrix3d K = S_llt.solve(P).transpose();
-  pose = pose * SE2::exp(K * innovation);
+  // The car moved on since; the correction moves along.
+  const SE2 since = at.inverse() * pose;
+  pose = at * SE2::exp(K * innovation) * since;
   const Eigen::Matrix3d A = Eigen::Matrix3d::Identity() - K;
   P = A * P * A.transpose() + K * R * K.transpose();
   ++statistics.accepted;
 }
 
-void AvpSlam::Impl::localise(const PointCloud& seen) {
-  const LocalPoints* map = mapUnderTheCar();
+void AvpSlam::Impl::localise(const PointCloud& seen, const View& view) {
+  const SE2 at = poseOf(view);
+  const LocalPoints* map = mapUnder(at);
   if (map == nullptr) return;
   ++statistics.registrations;
   const PointIcpResult fit =
-      registerPoints(seen, map->cloud, map->T_map.inverse() * pose, options.icp);
-  if (fit.accepted) correct(map->T_map * fit.T_target_source);
+      registerPoints(seen, map->cloud, map->T_map.inverse() * at, options.icp);
+  if (fit.accepted) correct(map->T_map * fit.T_target_source, at);
 }
 
 void AvpSlam::Impl::closeLoops() {
@@ -212,21 +230,42 @@ PoseEstimate AvpSlam::addOdometry(const PoseEstimate& odometry) {
   return m.estimate();
 }
 
+void AvpSlam::holdView() {
+  Impl& m = *impl_;
+  PARKADE_CHECK(m.odometry.has_value(), "a view before the first odometry");
+  if (m.odometry->health == Health::kInitialising) return;
+  m.views.push_back({*m.odometry, m.travelled, m.history.size() - 1});
+}
+
+void AvpSlam::dropView() {
+  Impl& m = *impl_;
+  if (m.views.empty()) return;
+  m.views.pop_front();
+}
+
+PoseEstimate AvpSlam::estimate() const {
+  PARKADE_CHECK(impl_->odometry.has_value(), "no odometry yet");
+  return impl_->estimate();
+}
+
 PoseEstimate AvpSlam::addSemantics(const SemanticFrame& frame) {
   Impl& m = *impl_;
   PARKADE_CHECK(m.odometry.has_value(), "semantics before the first odometry");
-  if (m.odometry->health == Health::kInitialising) return m.estimate();
-  if (m.maps.empty() || m.travelled - m.maps.back().begin_m >= m.options.local_map_m) {
+  if (m.views.empty()) holdView();
+  if (m.views.empty()) return m.estimate();
+  const Impl::View view = std::move(m.views.front());
+  m.views.pop_front();
+  if (m.maps.empty() || view.travelled - m.maps.back().begin_m >= m.options.local_map_m) {
     if (!m.maps.empty()) m.closeLoops();
-    m.beginLocalMap();
+    m.beginLocalMap(view);
   }
   const PointCloud seen = pointsOfLabels(frame.labels, m.options.range_m, m.options.cell_m);
-  if (m.travelled - m.last_localised >= m.options.localise_distance_m) {
-    m.last_localised = m.travelled;
-    m.localise(seen);
+  if (view.travelled - m.last_localised >= m.options.localise_distance_m) {
+    m.last_localised = view.travelled;
+    m.localise(seen, view);
   }
   LocalPoints& open = m.maps.back();
-  const SE2 T_local_vehicle = open.odometry.inverse() * SE2::fromSE3(m.odometry->T_odom_vehicle);
+  const SE2 T_local_vehicle = open.odometry.inverse() * SE2::fromSE3(view.odometry.T_odom_vehicle);
   open.cloud.add(seen, T_local_vehicle);
   for (const SemanticPoint& point : seen.points()) {
     const Eigen::Vector2d p = T_local_vehicle * point.p;

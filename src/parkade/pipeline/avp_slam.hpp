@@ -65,7 +65,10 @@ class AvpSlam final : public SemanticMapper {
   ~AvpSlam() override;
 
   PoseEstimate addOdometry(const PoseEstimate& odometry) override;
+  void holdView() override;
+  void dropView() override;
   PoseEstimate addSemantics(const SemanticFrame& frame) override;
+  [[nodiscard]] PoseEstimate estimate() const override;
   void finish() override;
   [[nodiscard]] ParkingMap map(const std::string& name) const override;
   [[nodiscard]] Trajectory finalTrajectory() const override;

@@ -2,99 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/pipeline/fused_mapper.hpp"
 
-#include <fmt/core.h>
-
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <unordered_map>
+#include <utility>
 
 #include "parkade/core/check.hpp"
-#include "parkade/core/log.hpp"
-#include "parkade/fusion/pose_filter.hpp"
-#include "parkade/mapping/submap.hpp"
+#include "parkade/pipeline/fused_mapper_impl.hpp"
 
 namespace parkade {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 
-// A stretch of the drive: an anchor of the filter, and what was seen from there on.
-struct Stretch {
-  std::int64_t anchor = 0;
-  TimeNs t_ns = 0;
-  double begin_m = 0.0;  // way travelled
-  double end_m = 0.0;
-  bool closed = false;
-  Submap submap;
-  GroundPose pose;  // as last known
-  SE2 applied;      // that the map was made with
-  SE3 T_odom_vehicle;
-};
-
-// Adds a covariance that all measurements with this one share: only in its observable directions.
-Eigen::Matrix3d withSharedNoise(const Eigen::Matrix3d& information, const Eigen::Matrix3d& shared) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information);
-  Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
-  constexpr double kLeast = 1e-6;
-  for (int k = 0; k < 3; ++k) {
-    if (eigen.eigenvalues()[k] <= kLeast) continue;
-    const Eigen::Vector3d u = eigen.eigenvectors().col(k);
-    result += u * u.transpose() / (1.0 / eigen.eigenvalues()[k] + u.dot(shared * u));
-  }
-  return result;
-}
-
-double largestSigma(const Eigen::Matrix2d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(covariance, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, eigen.eigenvalues()[1]));
-}
-
 }  // namespace
-
-class FusedMapper::Impl {
- public:
-  Impl(const FusedMapperOptions& o, std::vector<Eigen::Vector3d> cameras)
-      : options(o),
-        viewpoints(std::move(cameras)),
-        compass(o.compass),
-        local(o.local_map),
-        global(o.global_map),
-        slots(o.slots),
-        objects(o.objects) {}
-
-  PoseEstimate estimate() const;
-  void predict(const PoseEstimate& odometry);
-  void beginStretch();
-  void enterMaps(const SemanticFrame& frame);
-  void readCompass(const SemanticFrame& frame);
-  void registerFrameToSubmaps(const SemanticFrame& frame);
-  void tryStretch(const SemanticFrame& frame, std::size_t index, bool revisit);
-  void addLoopEdge(const Stretch& stretch, const Registration& fit);
-  void followCorrections();
-  Stretch& open() { return stretches.back(); }
-
-  FusedMapperOptions options;
-  std::vector<Eigen::Vector3d> viewpoints;
-  Compass compass;
-  PoseFilter filter;
-  std::optional<PoseEstimate> odometry;
-  double travelled = 0.0;
-  double turned = 0.0;  // since the open stretch began
-  std::vector<Stretch> stretches;
-  std::vector<PoseGraphEdge> edges;
-  double last_entered = -1e9;
-  double last_registered = -1e9;
-  bool corrected = false;
-  std::string fit_reason;
-  LocalMap local;
-  GlobalMap global;
-  SlotRegistry slots;
-  ObjectRegistry objects;
-  TimeNs last_t_ns = 0;
-  FusedMapperStatistics statistics;
-};
 
 PoseEstimate FusedMapper::Impl::estimate() const {
   PoseEstimate e = *odometry;
@@ -139,18 +60,20 @@ void FusedMapper::Impl::predict(const PoseEstimate& now) {
   turned += std::abs(step.T_before_after.angle());
 }
 
-void FusedMapper::Impl::beginStretch() {
-  if (!stretches.empty()) {
-    open().closed = true;
-    open().end_m = travelled;
-  }
+void FusedMapper::Impl::hold() {
+  views.push_back({filter.addAnchor(), *odometry, travelled, turned, history.size() - 1});
+}
+
+void FusedMapper::Impl::beginStretch(const View& view) {
+  if (!stretches.empty()) open().end_m = view.travelled;
   Stretch stretch;
-  stretch.anchor = filter.addAnchor();
-  stretch.t_ns = odometry->t_ns;
-  stretch.begin_m = travelled;
-  stretch.pose = filter.pose();
+  stretch.anchor = view.anchor;
+  stretch.t_ns = view.odometry.t_ns;
+  stretch.begin_m = view.travelled;
+  stretch.pose = filter.anchor(view.anchor);
   stretch.applied = stretch.pose.T_world_vehicle;
-  stretch.T_odom_vehicle = odometry->T_odom_vehicle;
+  stretch.T_odom_vehicle = view.odometry.T_odom_vehicle;
+  history.beginAnchor(view.anchor, view.at);
   if (!stretches.empty()) {
     PoseGraphEdge edge;
     edge.from = open().anchor;
@@ -165,129 +88,11 @@ void FusedMapper::Impl::beginStretch() {
   }
   global.setAnchor(stretch.anchor, stretch.applied);
   stretches.push_back(std::move(stretch));
-  turned = 0.0;
+  turned_at_stretch = view.turned;
   ++statistics.anchors;
   if (static_cast<int>(filter.anchors().size()) > options.submaps.max_anchors) {
     filter.removeAnchor(filter.anchors().front());
   }
-}
-
-void FusedMapper::Impl::addLoopEdge(const Stretch& stretch, const Registration& fit) {
-  if (!edges.empty() && edges.back().kind == EdgeKind::kLoop &&
-      edges.back().from == stretch.anchor && edges.back().to == open().anchor) {
-    return;  // one per pair of stretches
-  }
-  PoseGraphEdge edge;
-  edge.from = stretch.anchor;
-  edge.to = open().anchor;
-  edge.kind = EdgeKind::kLoop;
-  const SE2 T_open_vehicle =
-      filter.anchor(open().anchor).T_world_vehicle.inverse() * filter.pose().T_world_vehicle;
-  edge.T_from_to = (fit.T_map_vehicle * T_open_vehicle.inverse()).toSE3();
-  edge.information.setZero();
-  constexpr int kAt[3] = {0, 1, 5};
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) edge.information(kAt[i], kAt[j]) = fit.information(i, j);
-  }
-  edges.push_back(edge);
-}
-
-void FusedMapper::Impl::tryStretch(const SemanticFrame& frame, std::size_t index, bool revisit) {
-  const Stretch& stretch = stretches[index];
-  const SE2 expected =
-      filter.anchor(stretch.anchor).T_world_vehicle.inverse() * filter.pose().T_world_vehicle;
-  const Eigen::Matrix4d P = filter.relativeCovariance(stretch.anchor);
-  const double sigma = largestSigma(P.topLeftCorner<2, 2>());
-  ++(revisit ? statistics.revisits : statistics.registrations);
-  Registration fit;
-  // Half of the narrowest slot is the distance at which rows look alike.
-  constexpr double kCertain = 0.25;
-  if (sigma < kCertain) {
-    fit = registerFrame(frame, stretch.submap, expected, options.registration, viewpoints);
-  } else if (revisit) {
-    const LoopResult loop =
-        searchInSubmap(frame, stretch.submap, expected, sigma, std::sqrt(P(2, 2)), options.loop,
-                       options.registration, viewpoints);
-    fit = loop.registration;
-    fit.accepted = loop.accepted;
-    fit.reason = loop.reason;
-  } else {
-    fit.reason = "the pose is too uncertain";
-  }
-  if (!fit.accepted) {
-    logDebug("registration to stretch {}: {}", stretch.anchor, fit.reason);
-    return;
-  }
-  // All registrations to a submap share its error: each is as unsure as if it were the only one
-  // of those that follow at this spacing.
-  const double uses = std::max(
-      1.0, (options.submaps.length_m + 5.0) / std::max(0.1, options.submaps.register_distance_m));
-  Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
-  shared.diagonal() << std::pow(options.submaps.sigma_m, 2), std::pow(options.submaps.sigma_m, 2),
-      std::pow(options.submaps.sigma_deg * kDegree, 2);
-  const Eigen::Matrix3d information = withSharedNoise(fit.information, uses * shared);
-  const FilterUpdate update = filter.updateRelative(stretch.anchor, fit.T_map_vehicle, information,
-                                                    options.submaps.gate_probability);
-  if (!update.accepted) {
-    ++statistics.refused_by_gate;
-    return;
-  }
-  corrected = true;
-  ++(revisit ? statistics.loops : statistics.accepted);
-  if (!revisit) return;
-  // Over the same ground the car stands as high as it did; only where it was near the anchor.
-  constexpr double kSamePlace = 3.0;
-  const double distance = fit.T_map_vehicle.translation().norm();
-  if (distance < kSamePlace) {
-    filter.updateHeight(stretch.anchor, 0.0, options.submaps.height_sigma_m + 0.01 * distance,
-                        0.999);
-  }
-  addLoopEdge(stretch, fit);
-}
-
-void FusedMapper::Impl::readCompass(const SemanticFrame& frame) {
-  const double expected = filter.pose().T_world_vehicle.angle();
-  const std::optional<double> heading = compass.read(frame, expected, travelled);
-  if (!heading) return;
-  const FilterUpdate update = filter.updateHeading(*heading, options.compass.sigma_deg * kDegree,
-                                                   options.submaps.gate_probability);
-  if (!update.accepted) return;
-  ++statistics.headings;
-  corrected = true;
-}
-
-void FusedMapper::Impl::registerFrameToSubmaps(const SemanticFrame& frame) {
-  // The oldest stretch of this passage that still overlaps, and the nearest of an earlier one.
-  std::optional<std::size_t> recent;
-  std::optional<std::size_t> earlier;
-  double nearest = 1e9;
-  const Eigen::Vector2d& at = frame.labels.geometry.center;
-  for (std::size_t i = 0; i + 1 < stretches.size(); ++i) {
-    const Stretch& s = stretches[i];
-    if (!filter.hasAnchor(s.anchor) || s.submap.frames() == 0) continue;
-    const double age = travelled - s.end_m;
-    if (age < options.submaps.min_age_m) continue;
-    const SE2 T = filter.anchor(s.anchor).T_world_vehicle.inverse() * filter.pose().T_world_vehicle;
-    const Eigen::Vector2d p = T * at;
-    constexpr double kMargin = 3.0;
-    if ((p - s.submap.low()).minCoeff() < -kMargin || (s.submap.high() - p).minCoeff() < -kMargin) {
-      continue;
-    }
-    // Floors above and below: a revisit is at the same height.
-    constexpr double kSameFloor = 1.5;
-    if (std::abs(filter.anchor(s.anchor).z - filter.pose().z) > kSameFloor) continue;
-    if (age < options.submaps.revisit_age_m) {
-      if (!recent) recent = i;
-      continue;
-    }
-    const Eigen::Vector2d middle = 0.5 * (s.submap.low() + s.submap.high());
-    const double distance = (p - middle).norm();
-    if (distance >= nearest) continue;
-    nearest = distance;
-    earlier = i;
-  }
-  if (recent) tryStretch(frame, *recent, false);
-  if (earlier) tryStretch(frame, *earlier, true);
 }
 
 void FusedMapper::Impl::followCorrections() {
@@ -312,16 +117,16 @@ void FusedMapper::Impl::followCorrections() {
   objects.moveWithAnchors(correction);
 }
 
-void FusedMapper::Impl::enterMaps(const SemanticFrame& frame) {
-  const SE2& pose = filter.pose().T_world_vehicle;
+void FusedMapper::Impl::enterMaps(const SemanticFrame& frame, const View& view) {
+  const SE2 pose = poseOf(view);
+  const TimeNs t_ns = view.odometry.t_ns;
   if (!frame.labels.labels.empty()) {
     const PackedLabels labels = packLabels(frame);
-    local.update(labels, odometry->t_ns, SE2::fromSE3(odometry->T_odom_vehicle));
-    const SE2 T_anchor_vehicle = filter.anchor(open().anchor).T_world_vehicle.inverse() * pose;
-    global.update(labels, odometry->t_ns, open().anchor, T_anchor_vehicle);
+    local.update(labels, t_ns, SE2::fromSE3(view.odometry.T_odom_vehicle));
+    global.update(labels, t_ns, open().anchor, between(open().anchor, view));
   }
-  slots.update(frame.slots, odometry->t_ns, pose, open().anchor);
-  objects.update(frame.objects, pose, filter.pose().z, open().anchor);
+  slots.update(frame.slots, t_ns, pose, open().anchor);
+  objects.update(frame.objects, pose, filter.anchor(view.anchor).z, open().anchor);
 }
 
 FusedMapper::FusedMapper(const FusedMapperOptions& options, std::vector<Eigen::Vector3d> viewpoints)
@@ -333,32 +138,63 @@ PoseEstimate FusedMapper::addOdometry(const PoseEstimate& odometry) {
   m.predict(odometry);
   m.odometry = odometry;
   m.last_t_ns = odometry.t_ns;
+  if (odometry.health != Health::kInitialising) m.history.add(odometry);
   return m.estimate();
+}
+
+void FusedMapper::holdView() {
+  Impl& m = *impl_;
+  PARKADE_CHECK(m.odometry.has_value(), "a view before the first odometry");
+  if (m.odometry->health != Health::kInitialising) m.hold();
+}
+
+void FusedMapper::dropView() {
+  Impl& m = *impl_;
+  if (m.views.empty()) return;
+  m.filter.removeAnchor(m.views.front().anchor);
+  m.views.pop_front();
+}
+
+PoseEstimate FusedMapper::estimate() const {
+  PARKADE_CHECK(impl_->odometry.has_value(), "no odometry yet");
+  return impl_->estimate();
 }
 
 PoseEstimate FusedMapper::addSemantics(const SemanticFrame& frame) {
   Impl& m = *impl_;
   PARKADE_CHECK(m.odometry.has_value(), "semantics before the first odometry");
-  if (m.odometry->health == Health::kInitialising) return m.estimate();
+  if (m.views.empty()) {
+    if (m.odometry->health == Health::kInitialising) return m.estimate();
+    m.hold();
+  }
+  const Impl::View view = std::move(m.views.front());
+  m.views.pop_front();
   const SubmapOptions& o = m.options.submaps;
-  if (m.stretches.empty() || m.travelled - m.open().begin_m >= o.length_m ||
-      m.turned >= o.rotation_deg * kDegree) {
-    m.beginStretch();
+  const bool begins = m.stretches.empty() || view.travelled - m.open().begin_m >= o.length_m ||
+                      view.turned - m.turned_at_stretch >= o.rotation_deg * kDegree;
+  if (begins) m.beginStretch(view);
+  if (view.travelled - m.last_registered >= o.register_distance_m) {
+    m.last_registered = view.travelled;
+    m.readCompass(frame, view);
+    m.registerFrameToSubmaps(frame, view);
   }
-  if (m.travelled - m.last_registered >= o.register_distance_m) {
-    m.last_registered = m.travelled;
-    m.readCompass(frame);
-    m.registerFrameToSubmaps(frame);
-  }
-  if (m.travelled - m.last_entered >= o.frame_distance_m) {
-    m.last_entered = m.travelled;
-    const SE2 T_anchor_vehicle = m.filter.anchor(m.open().anchor).T_world_vehicle.inverse() *
-                                 m.filter.pose().T_world_vehicle;
-    m.open().submap.add(frame, T_anchor_vehicle);
+  if (view.travelled - m.last_entered >= o.frame_distance_m) {
+    m.last_entered = view.travelled;
+    m.open().submap.add(frame, m.between(m.open().anchor, view));
   }
   if (std::exchange(m.corrected, false)) m.followCorrections();
-  m.enterMaps(frame);
+  m.enterMaps(frame, view);
+  if (!begins) m.filter.removeAnchor(view.anchor);
   return m.estimate();
+}
+
+Trajectory FusedMapper::finalTrajectory() const {
+  const Impl& m = *impl_;
+  return m.history.trajectory([&](std::int64_t anchor) {
+    const auto it = std::find_if(m.stretches.begin(), m.stretches.end(),
+                                 [&](const Impl::Stretch& s) { return s.anchor == anchor; });
+    return it->pose;
+  });
 }
 
 void FusedMapper::finish() {
@@ -373,7 +209,7 @@ ParkingMap FusedMapper::map(const std::string& name) const {
   map.grid = m.global.grid();
   map.objects = m.objects.objects();
   map.slots = m.slots.slots(m.last_t_ns, map.objects);
-  for (const Stretch& s : m.stretches) {
+  for (const Impl::Stretch& s : m.stretches) {
     map.nodes.push_back(
         {s.anchor, s.t_ns, liftPose(s.pose.T_world_vehicle, s.pose.z, s.T_odom_vehicle)});
   }

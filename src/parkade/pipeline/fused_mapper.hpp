@@ -15,6 +15,7 @@
 #include "parkade/mapping/object_registry.hpp"
 #include "parkade/mapping/parking_map.hpp"
 #include "parkade/mapping/slot_registry.hpp"
+#include "parkade/pipeline/semantic_mapper.hpp"
 #include "parkade/types/pose_estimate.hpp"
 #include "parkade/types/semantic_features.hpp"
 
@@ -97,21 +98,23 @@ struct FusedMapperStatistics {
 /// features to submaps of earlier stretches corrects, and all that was seen enters the map, which
 /// follows the corrections. Eats poses and features, never images. The same calls give the same
 /// bytes. Not thread-safe.
-class FusedMapper {
+class FusedMapper final : public SemanticMapper {
  public:
   /// viewpoints: the cameras' places in the vehicle frame.
   FusedMapper(const FusedMapperOptions& options, std::vector<Eigen::Vector3d> viewpoints);
-  ~FusedMapper();
+  ~FusedMapper() override;
 
-  /// The odometry's pose of a frame set. Gives the fused pose, T_world_vehicle in its place of
-  /// T_odom_vehicle, with the fused covariance; the odometry's own while it has not started.
-  PoseEstimate addOdometry(const PoseEstimate& odometry);
-  /// The features of the frame set that was last given to addOdometry(). Gives its pose anew.
-  PoseEstimate addSemantics(const SemanticFrame& frame);
+  PoseEstimate addOdometry(const PoseEstimate& odometry) override;
+  void holdView() override;
+  void dropView() override;
+  PoseEstimate addSemantics(const SemanticFrame& frame) override;
+  [[nodiscard]] PoseEstimate estimate() const override;
+  void finish() override;
+  [[nodiscard]] ParkingMap map(const std::string& name) const override;
+  /// Each pose between the anchors before and after it, as the filter knows them in the end: an
+  /// anchor's pose holds all that was measured since.
+  [[nodiscard]] Trajectory finalTrajectory() const override;
 
-  /// The map as it is; finish() first, at the end of a run.
-  [[nodiscard]] ParkingMap map(const std::string& name) const;
-  void finish();
   [[nodiscard]] const LocalMap& localMap() const;
   [[nodiscard]] const LayeredGrid& globalGrid() const;
   [[nodiscard]] const FusedMapperStatistics& statistics() const;

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <deque>
 #include <future>
 #include <opencv2/core/utility.hpp>
 #include <optional>
@@ -63,6 +64,8 @@ class MappingRun::Impl {
       : tracker(rig, options.tracking),
         estimator_(rig, options.vio),
         T_vehicle_imu_(rig.imu.T_vehicle_imu),
+        semantics_delay_(options.semantics_delay),
+        look_pool_(threads > 1 ? 1 : 0),
         pool_(threads - 1) {
     tracker.setParallel([this](int count, const std::function<void(int)>& body) {
       pool_.parallelFor(count, body);
@@ -79,12 +82,14 @@ class MappingRun::Impl {
   Trajectory trajectory;
   Trajectory odometry;
   std::unique_ptr<SemanticFrontEnd> front_end;
-  std::unique_ptr<FusedMapper> mapper;
+  std::unique_ptr<SemanticMapper> mapper;
+  std::unique_ptr<DeadReckoning> reckoning;  // instead of key points
 
  private:
   // The estimator's part of one frame set; runs beside the tracking of the next.
   struct Estimation {
     Packet packet;
+    int number = 0;  // counts frame sets
     TrackSet tracks;
     MotionPredictor state;  // after it
     std::future<void> done;
@@ -92,10 +97,21 @@ class MappingRun::Impl {
     Clock::time_point end;
   };
 
+  // The features of one frame set, on their way beside everything else.
+  struct Look {
+    FrameSet frames;
+    int number = 0;  // of the frame set
+    Result<SemanticFrame> frame = Error{"not looked yet"};
+    std::future<void> done;
+  };
+
   void process(Packet packet);
+  TrackSet track(const Packet& packet);
   void finishEstimation();
   void estimate(Estimation& work);
-  PoseEstimate fuse(const Estimation& work, const PoseEstimate& estimate);
+  PoseEstimate odometryOf(const Estimation& work);
+  void look(Estimation& work, const PoseEstimate& odometry_pose);
+  void enterLooks(int before);
   MotionPrior predict(const Packet& packet);
   void summarise(Clock::time_point begin);
 
@@ -114,7 +130,10 @@ class MappingRun::Impl {
   StageClock latency_clock_{"latency"};
   Status fusion_status_;
   BusyTime busy_;
-  ThreadPool pool_;  // last: its threads use what is above
+  int semantics_delay_ = 0;
+  std::deque<std::unique_ptr<Look>> looks_;
+  ThreadPool look_pool_;
+  ThreadPool pool_;  // last: the pools' threads use what is above
 };
 
 MotionPrior MappingRun::Impl::predict(const Packet& packet) {
@@ -130,10 +149,18 @@ MotionPrior MappingRun::Impl::predict(const Packet& packet) {
   return turnBetween(readings, T_vehicle_imu_, *last_t_ns_, now);
 }
 
-void MappingRun::Impl::process(Packet packet) {
+TrackSet MappingRun::Impl::track(const Packet& packet) {
+  TrackSet tracks;
+  if (reckoning != nullptr) {
+    tracks.t_ns = packet.frames.t_ns;
+    for (std::size_t c = 0; c < packet.frames.images.size() && c < summary.images.size(); ++c) {
+      summary.images[c] += packet.frames.images[c].empty() ? 0 : 1;
+    }
+    return tracks;
+  }
   const MotionPrior prior = predict(packet);
   const Clock::time_point begin = Clock::now();
-  TrackSet tracks = tracker.track(packet.frames, prior);
+  tracks = tracker.track(packet.frames, prior);
   const Clock::time_point end = Clock::now();
   track_clock_.add(millisecondsBetween(begin, end));
   observations_ += static_cast<std::int64_t>(tracks.observations.size());
@@ -142,6 +169,13 @@ void MappingRun::Impl::process(Packet packet) {
   for (PipelineObserver* observer : observers) {
     observer->onTracks({packet.frames, prior, tracks, tracker.report()});
   }
+  return tracks;
+}
+
+void MappingRun::Impl::process(Packet packet) {
+  const Clock::time_point begin = Clock::now();
+  TrackSet tracks = track(packet);
+  const Clock::time_point end = Clock::now();
   finishEstimation();
   busy_.add(begin, end);
   last_t_ns_ = packet.frames.t_ns;
@@ -150,40 +184,76 @@ void MappingRun::Impl::process(Packet packet) {
   running_ = std::make_unique<Estimation>();
   running_->packet = std::move(packet);
   running_->tracks = std::move(tracks);
+  running_->number = summary.frame_sets;
   running_->done = pool_.submit([this, work = running_.get()] { estimate(*work); });
+}
+
+PoseEstimate MappingRun::Impl::odometryOf(const Estimation& work) {
+  if (reckoning != nullptr) {
+    for (const ImuSample& sample : work.packet.imu) reckoning->addImu(sample);
+    for (const WheelSample& sample : work.packet.wheel) reckoning->addWheel(sample);
+    return reckoning->poseAt(work.packet.frames.t_ns);
+  }
+  for (const ImuSample& sample : work.packet.imu) estimator_.addImu(sample);
+  for (const WheelSample& sample : work.packet.wheel) estimator_.addWheel(sample);
+  return estimator_.addTracks(work.tracks);
 }
 
 void MappingRun::Impl::estimate(Estimation& work) {
   work.begin = Clock::now();
-  for (const ImuSample& sample : work.packet.imu) estimator_.addImu(sample);
-  for (const WheelSample& sample : work.packet.wheel) estimator_.addWheel(sample);
-  const PoseEstimate estimate = estimator_.addTracks(work.tracks);
+  enterLooks(work.number - semantics_delay_);
+  const PoseEstimate estimate = odometryOf(work);
   work.state = estimator_.predictor();
-  const PoseEstimate fused = mapper == nullptr ? estimate : fuse(work, estimate);
+  PoseEstimate fused = mapper == nullptr ? estimate : mapper->addOdometry(estimate);
+  if (mapper != nullptr && semantics_delay_ == 0) {
+    look(work, estimate);
+    enterLooks(work.number);
+    fused = mapper->estimate();
+  }
   if (estimate.health != Health::kInitialising) {
     odometry.push_back({estimate.t_ns, estimate.T_odom_vehicle});
     trajectory.push_back({fused.t_ns, fused.T_odom_vehicle});
   }
-  work.packet.frames.images.clear();
   work.end = Clock::now();
   for (PipelineObserver* observer : observers) {
     observer->onPose({work.packet.frames.index, static_cast<int>(work.tracks.observations.size()),
                       fused, estimator_.statistics()});
   }
+  if (mapper != nullptr && semantics_delay_ > 0) look(work, estimate);
+  work.packet.frames.images.clear();
 }
 
-PoseEstimate MappingRun::Impl::fuse(const Estimation& work, const PoseEstimate& estimate) {
-  PoseEstimate fused = mapper->addOdometry(estimate);
-  if (!front_end->addOdometry(estimate, estimator_.landmarks())) return fused;
-  const Result<SemanticFrame> frame = front_end->look(work.packet.frames);
-  if (!frame) {
-    if (fusion_status_) fusion_status_ = frame.error();
-    return fused;
+// Sends the frame set off to be looked at, where that is due.
+void MappingRun::Impl::look(Estimation& work, const PoseEstimate& odometry_pose) {
+  const std::vector<Landmark> landmarks =
+      reckoning != nullptr ? std::vector<Landmark>() : estimator_.landmarks();
+  if (!front_end->addOdometry(odometry_pose, landmarks)) return;
+  mapper->holdView();
+  auto item = std::make_unique<Look>();
+  item->frames = std::move(work.packet.frames);
+  item->number = work.number;
+  item->done = look_pool_.submit([this, at = item.get()] {
+    at->frame = front_end->look(at->frames);
+    at->frames.images.clear();
+  });
+  looks_.push_back(std::move(item));
+}
+
+// Waits for the features of frame sets up to that number, and corrects with them.
+void MappingRun::Impl::enterLooks(int before) {
+  while (!looks_.empty() && looks_.front()->number <= before) {
+    const std::unique_ptr<Look> item = std::move(looks_.front());
+    looks_.pop_front();
+    item->done.get();
+    if (!item->frame) {
+      if (fusion_status_) fusion_status_ = item->frame.error();
+      mapper->dropView();
+      continue;
+    }
+    const Clock::time_point begin = Clock::now();
+    mapper->addSemantics(*item->frame);
+    fuse_clock_.add(millisecondsBetween(begin, Clock::now()));
   }
-  const Clock::time_point begin = Clock::now();
-  fused = mapper->addSemantics(*frame);
-  fuse_clock_.add(millisecondsBetween(begin, Clock::now()));
-  return fused;
 }
 
 void MappingRun::Impl::finishEstimation() {
@@ -246,6 +316,7 @@ Status MappingRun::Impl::run(SensorSource& source, const ProgressCallback& progr
   }
   dispatch();
   finishEstimation();
+  enterLooks(summary.frame_sets);
   if (mapper != nullptr) mapper->finish();
   summarise(begin);
   if (status && !fusion_status_) status = fusion_status_;
@@ -281,10 +352,18 @@ Result<std::unique_ptr<MappingRun>> MappingRun::create(const Rig& rig,
   for (std::size_t c = 0; c < masks->size(); ++c) {
     if (!(*masks)[c].empty()) impl->tracker.setMask(static_cast<int>(c), (*masks)[c]);
   }
-  if (method == RunMethod::kFused) {
-    auto front_end = SemanticFrontEnd::create(rig, options.semantics);
-    if (!front_end) return front_end.error();
-    impl->front_end = std::move(front_end).value();
+  if (method == RunMethod::kVis) {
+    return std::unique_ptr<MappingRun>(new MappingRun(std::move(impl)));
+  }
+  auto front_end = SemanticFrontEnd::create(rig, options.semantics);
+  if (!front_end) return front_end.error();
+  impl->front_end = std::move(front_end).value();
+  if (method != RunMethod::kFused) {
+    impl->reckoning = std::make_unique<DeadReckoning>(rig.imu.T_vehicle_imu, options.reckoning);
+  }
+  if (method == RunMethod::kAvpSlam) {
+    impl->mapper = std::make_unique<AvpSlam>(options.avp_slam);
+  } else {
     std::vector<Eigen::Vector3d> viewpoints;
     for (const RigCamera& camera : rig.cameras) {
       viewpoints.push_back(camera.T_vehicle_cam.translation());
@@ -317,12 +396,13 @@ const Trajectory& MappingRun::odometry() const {
   return impl_->odometry;
 }
 
-const FusedMapper* MappingRun::mapper() const {
+const SemanticMapper* MappingRun::mapper() const {
   return impl_->mapper.get();
 }
 
 Trajectory MappingRun::finalTrajectory() const {
-  return impl_->estimator().finalTrajectory();
+  return impl_->mapper != nullptr ? impl_->mapper->finalTrajectory()
+                                  : impl_->estimator().finalTrajectory();
 }
 
 std::vector<Landmark> MappingRun::landmarks() const {

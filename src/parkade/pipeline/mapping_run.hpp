@@ -9,6 +9,8 @@
 #include "parkade/core/options.hpp"
 #include "parkade/core/progress.hpp"
 #include "parkade/core/result.hpp"
+#include "parkade/fusion/dead_reckoning.hpp"
+#include "parkade/pipeline/avp_slam.hpp"
 #include "parkade/pipeline/fused_mapper.hpp"
 #include "parkade/pipeline/semantic_front_end.hpp"
 #include "parkade/pipeline/stage_clock.hpp"
@@ -26,11 +28,21 @@ struct PipelineOptions {
   VioOptions vio;
   SemanticFrontEndOptions semantics;
   FusedMapperOptions fusion;
+  DeadReckoningOptions reckoning;
+  AvpSlamOptions avp_slam;
+  int semantics_delay = 2;
+
   void visit(OptionVisitor& v) {
     v.group("tracking", tracking);
     v.group("vio", vio);
     v.group("semantics", semantics);
     v.group("fusion", fusion);
+    v.group("reckoning", reckoning);
+    v.group("avp_slam", avp_slam);
+    v.field("semantics_delay", semantics_delay, "count",
+            "Features of a frame set correct the pose this many frame sets later: poses never wait "
+            "for networks, and never depend on how fast these are.",
+            0, 50);
   }
 };
 
@@ -52,8 +64,10 @@ struct PoseEvent {
 
 /// What a run works with.
 enum class RunMethod {
-  kVis,    ///< key points and the inertial unit
-  kFused,  ///< and semantic features, with a map
+  kVis,       ///< key points and the inertial unit
+  kFused,     ///< and semantic features, with a map
+  kSemantic,  ///< wheels, gyroscope and semantic features, with a map; no key points
+  kAvpSlam,   ///< wheels, gyroscope and semantic points by AVP-SLAM's scheme
 };
 
 /// Looks on while a run goes. The frame sets come in their order to each of the two; with two
@@ -105,8 +119,8 @@ class MappingRun {
   [[nodiscard]] const Trajectory& trajectory() const;
   /// The odometry's poses, as they were known at their frame sets.
   [[nodiscard]] const Trajectory& odometry() const;
-  /// The fusing mapper, finished when run() is over; null where the method has none.
-  [[nodiscard]] const FusedMapper* mapper() const;
+  /// What made the map, finished when run() is over; null where the method has none.
+  [[nodiscard]] const SemanticMapper* mapper() const;
   /// The same instants, estimated with all that came after.
   [[nodiscard]] Trajectory finalTrajectory() const;
   [[nodiscard]] std::vector<Landmark> landmarks() const;

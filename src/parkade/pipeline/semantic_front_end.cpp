@@ -3,9 +3,12 @@
 #include "parkade/pipeline/semantic_front_end.hpp"
 
 #include <algorithm>
+#include <deque>
+#include <mutex>
 #include <optional>
 #include <utility>
 
+#include "parkade/core/check.hpp"
 #include "parkade/geometry/se2.hpp"
 #include "parkade/pipeline/stitched_views.hpp"
 #include "parkade/semantics/class_map.hpp"
@@ -28,9 +31,14 @@ struct SemanticFrontEnd::Impl {
   GroundPlaneEstimator ground;
   std::unique_ptr<ObjectExtractor> objects;  // made when the masks are known
   AgentTracker tracker;
-  GroundPlaneEstimate floor;
+  // Taken by addOdometry(), used by look(), which may work in another thread meanwhile.
+  struct View {
+    GroundPlaneEstimate floor;
+    PoseEstimate now;
+  };
+  std::mutex views_mutex;
+  std::deque<View> views;
   std::optional<PoseEstimate> last_look;
-  PoseEstimate now;
   StageClock stitch_clock{"bev"};
   StageClock segment_clock{"segment"};
   StageClock feature_clock{"features"};
@@ -64,13 +72,19 @@ bool SemanticFrontEnd::addOdometry(const PoseEstimate& odometry,
                                    const std::vector<Landmark>& landmarks) {
   Impl& m = *impl_;
   if (odometry.health == Health::kInitialising) return false;
-  m.floor = m.ground.update(odometry, landmarks);
-  m.now = odometry;
-  if (!m.last_look) return true;
-  const double moved =
-      (odometry.T_odom_vehicle.translation() - m.last_look->T_odom_vehicle.translation()).norm();
-  return moved >= m.options.distance_m ||
-         toSeconds(odometry.t_ns - m.last_look->t_ns) >= m.options.interval_s;
+  const GroundPlaneEstimate floor = m.ground.update(odometry, landmarks);
+  if (m.last_look) {
+    const Eigen::Vector3d step =
+        odometry.T_odom_vehicle.translation() - m.last_look->T_odom_vehicle.translation();
+    if (step.norm() < m.options.distance_m &&
+        toSeconds(odometry.t_ns - m.last_look->t_ns) < m.options.interval_s) {
+      return false;
+    }
+  }
+  m.last_look = odometry;
+  const std::lock_guard lock(m.views_mutex);
+  m.views.push_back({floor, odometry});
+  return true;
 }
 
 Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames) {
@@ -79,9 +93,15 @@ Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames) {
     return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
   };
   Impl& m = *impl_;
-  m.last_look = m.now;
+  Impl::View view;
+  {
+    const std::lock_guard lock(m.views_mutex);
+    PARKADE_CHECK(!m.views.empty(), "no picture is due");
+    view = std::move(m.views.front());
+    m.views.pop_front();
+  }
   Clock::time_point begin = Clock::now();
-  const BevImage bev = m.stitcher.stitch(frames, m.floor.attitude);
+  const BevImage bev = m.stitcher.stitch(frames, view.floor.attitude);
   m.stitch_clock.add(since(begin));
   begin = Clock::now();
   Result<BevLabels> labels = m.network.segment(bev);
@@ -91,13 +111,13 @@ Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames) {
   SemanticFrame frame;
   frame.labels = std::move(labels).value();
   frame.labels.t_ns = frames.t_ns;
-  frame.attitude = m.floor.attitude;
-  frame.attitude_sigma = std::max(m.floor.sigma_pitch, m.floor.sigma_roll);
+  frame.attitude = view.floor.attitude;
+  frame.attitude_sigma = std::max(view.floor.sigma_pitch, view.floor.sigma_roll);
   frame.line_points = linePointsFromLabels(frame.labels, frame.attitude_sigma, m.options.lines);
   frame.line_segments = segmentsOf(frame.line_points);
   FoundObjects found = m.objects->extract(frame.labels, frame.attitude_sigma);
   frame.objects = std::move(found.objects);
-  frame.moving = m.tracker.update(found.agents, SE2::fromSE3(m.now.T_odom_vehicle), frames.t_ns);
+  frame.moving = m.tracker.update(found.agents, SE2::fromSE3(view.now.T_odom_vehicle), frames.t_ns);
   m.feature_clock.add(since(begin));
   return frame;
 }

@@ -53,9 +53,10 @@ class SemanticFrontEnd {
                                                           const SemanticFrontEndOptions& options);
   ~SemanticFrontEnd();
 
-  /// Takes the odometry of every frame set, in order; true where its pictures are due.
+  /// Takes the odometry of every frame set, in order; true where its pictures are due: look() must
+  /// then be called with them, once, in the same order; in another thread if need be.
   bool addOdometry(const PoseEstimate& odometry, const std::vector<Landmark>& landmarks);
-  /// The features of that frame set.
+  /// The features of the first frame set that is due.
   Result<SemanticFrame> look(const FrameSet& frames);
 
   [[nodiscard]] std::vector<StageTiming> timings() const;

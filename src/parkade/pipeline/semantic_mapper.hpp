@@ -20,8 +20,16 @@ class SemanticMapper {
   /// The odometry's pose of a frame set. Gives the corrected pose, T_world_vehicle in its place of
   /// T_odom_vehicle; the odometry's own while that has not started.
   virtual PoseEstimate addOdometry(const PoseEstimate& odometry) = 0;
-  /// The features of the frame set that was last given to addOdometry(). Gives its pose anew.
+  /// Keeps the last odometry's frame set as one whose features will come, a few frame sets later.
+  virtual void holdView() = 0;
+  /// The features of the first frame set held (of the last one given to addOdometry(), where none
+  /// is held). Gives the last frame set's pose anew.
   virtual PoseEstimate addSemantics(const SemanticFrame& frame) = 0;
+
+  /// The first frame set held gets no features after all.
+  virtual void dropView() = 0;
+  /// The last frame set's pose as known now.
+  [[nodiscard]] virtual PoseEstimate estimate() const = 0;
 
   /// Ends a run: takes up all corrections.
   virtual void finish() = 0;

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "parkade/fusion/pose_filter.hpp"
+#include "parkade/mapping/submap.hpp"
+#include "parkade/pipeline/anchored_history.hpp"
+#include "parkade/pipeline/fused_mapper.hpp"
+
+// Inside of the fusing mapper: fused_mapper.cpp holds the flow and the map, fused_registration.cpp
+// what corrects the pose.
+
+namespace parkade {
+
+class FusedMapper::Impl {
+ public:
+  /// A stretch of the drive: an anchor of the filter, and what was seen from there on.
+  struct Stretch {
+    std::int64_t anchor = 0;
+    TimeNs t_ns = 0;
+    double begin_m = 0.0;  // way travelled
+    double end_m = 0.0;
+    Submap submap;
+    GroundPose pose;  // as last known
+    SE2 applied;      // that the map was made with
+    SE3 T_odom_vehicle;
+  };
+  /// Where a picture was taken: an anchor that the filter holds until its features come.
+  struct View {
+    std::int64_t anchor = 0;
+    PoseEstimate odometry;
+    double travelled = 0.0;
+    double turned = 0.0;
+    std::size_t at = 0;  // pose of the history
+  };
+
+  Impl(const FusedMapperOptions& o, std::vector<Eigen::Vector3d> cameras)
+      : options(o),
+        viewpoints(std::move(cameras)),
+        compass(o.compass),
+        local(o.local_map),
+        global(o.global_map),
+        slots(o.slots),
+        objects(o.objects) {}
+
+  PoseEstimate estimate() const;
+  void predict(const PoseEstimate& odometry);
+  void hold();
+  void beginStretch(const View& view);
+  void enterMaps(const SemanticFrame& frame, const View& view);
+  void followCorrections();
+
+  void readCompass(const SemanticFrame& frame, const View& view);
+  void registerFrameToSubmaps(const SemanticFrame& frame, const View& view);
+  void tryStretch(const SemanticFrame& frame, const View& view, std::size_t index, bool revisit);
+  void addLoopEdge(const Stretch& stretch, const Registration& fit, const View& view);
+
+  Stretch& open() { return stretches.back(); }
+  [[nodiscard]] SE2 poseOf(const View& view) const {
+    return filter.anchor(view.anchor).T_world_vehicle;
+  }
+  /// The view seen from an anchor.
+  [[nodiscard]] SE2 between(std::int64_t anchor, const View& view) const {
+    return filter.anchor(anchor).T_world_vehicle.inverse() * poseOf(view);
+  }
+
+  FusedMapperOptions options;
+  std::vector<Eigen::Vector3d> viewpoints;
+  Compass compass;
+  PoseFilter filter;
+  std::optional<PoseEstimate> odometry;
+  AnchoredHistory history;
+  double travelled = 0.0;
+  double turned = 0.0;
+  double turned_at_stretch = 0.0;
+  std::deque<View> views;
+  std::vector<Stretch> stretches;
+  std::vector<PoseGraphEdge> edges;
+  double last_entered = -1e9;
+  double last_registered = -1e9;
+  bool corrected = false;
+  LocalMap local;
+  GlobalMap global;
+  SlotRegistry slots;
+  ObjectRegistry objects;
+  TimeNs last_t_ns = 0;
+  FusedMapperStatistics statistics;
+};
+
+}  // namespace parkade

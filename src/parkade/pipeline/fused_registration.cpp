@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "parkade/core/log.hpp"
+#include "parkade/pipeline/fused_mapper_impl.hpp"
+
+namespace parkade {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+
+// Adds a covariance that all measurements with this one share: only in its observable directions.
+Eigen::Matrix3d withSharedNoise(const Eigen::Matrix3d& information, const Eigen::Matrix3d& shared) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information);
+  Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
+  constexpr double kLeast = 1e-6;
+  for (int k = 0; k < 3; ++k) {
+    if (eigen.eigenvalues()[k] <= kLeast) continue;
+    const Eigen::Vector3d u = eigen.eigenvectors().col(k);
+    result += u * u.transpose() / (1.0 / eigen.eigenvalues()[k] + u.dot(shared * u));
+  }
+  return result;
+}
+
+double largestSigma(const Eigen::Matrix2d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(covariance, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, eigen.eigenvalues()[1]));
+}
+
+}  // namespace
+
+void FusedMapper::Impl::addLoopEdge(const Stretch& stretch, const Registration& fit,
+                                    const View& view) {
+  if (!edges.empty() && edges.back().kind == EdgeKind::kLoop &&
+      edges.back().from == stretch.anchor && edges.back().to == open().anchor) {
+    return;  // one per pair of stretches
+  }
+  PoseGraphEdge edge;
+  edge.from = stretch.anchor;
+  edge.to = open().anchor;
+  edge.kind = EdgeKind::kLoop;
+  const SE2 T_open_vehicle = between(open().anchor, view);
+  edge.T_from_to = (fit.T_map_vehicle * T_open_vehicle.inverse()).toSE3();
+  edge.information.setZero();
+  constexpr int kAt[3] = {0, 1, 5};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) edge.information(kAt[i], kAt[j]) = fit.information(i, j);
+  }
+  edges.push_back(edge);
+}
+
+void FusedMapper::Impl::tryStretch(const SemanticFrame& frame, const View& view, std::size_t index,
+                                   bool revisit) {
+  const Stretch& stretch = stretches[index];
+  const SE2 expected = between(stretch.anchor, view);
+  const Eigen::Matrix4d P = filter.relativeCovariance(stretch.anchor, view.anchor);
+  const double sigma = largestSigma(P.topLeftCorner<2, 2>());
+  ++(revisit ? statistics.revisits : statistics.registrations);
+  Registration fit;
+  // Half of the narrowest slot is the distance at which rows look alike.
+  constexpr double kCertain = 0.25;
+  if (sigma < kCertain) {
+    fit = registerFrame(frame, stretch.submap, expected, options.registration, viewpoints);
+  } else if (revisit) {
+    const LoopResult loop =
+        searchInSubmap(frame, stretch.submap, expected, sigma, std::sqrt(P(2, 2)), options.loop,
+                       options.registration, viewpoints);
+    fit = loop.registration;
+    fit.accepted = loop.accepted;
+    fit.reason = loop.reason;
+  } else {
+    fit.reason = "the pose is too uncertain";
+  }
+  if (!fit.accepted) {
+    logDebug("registration to stretch {}: {}", stretch.anchor, fit.reason);
+    return;
+  }
+  // All registrations to a submap share its error: each is as unsure as if it were the only one
+  // of those that follow at this spacing.
+  const double uses = std::max(
+      1.0, (options.submaps.length_m + 5.0) / std::max(0.1, options.submaps.register_distance_m));
+  Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
+  shared.diagonal() << std::pow(options.submaps.sigma_m, 2), std::pow(options.submaps.sigma_m, 2),
+      std::pow(options.submaps.sigma_deg * kDegree, 2);
+  const Eigen::Matrix3d information = withSharedNoise(fit.information, uses * shared);
+  const FilterUpdate update = filter.updateBetween(stretch.anchor, view.anchor, fit.T_map_vehicle,
+                                                   information, options.submaps.gate_probability);
+  if (!update.accepted) {
+    ++statistics.refused_by_gate;
+    return;
+  }
+  corrected = true;
+  ++(revisit ? statistics.loops : statistics.accepted);
+  if (!revisit) return;
+  // Over the same ground the car stands as high as it did; only where it was near the anchor.
+  constexpr double kSamePlace = 3.0;
+  const double distance = fit.T_map_vehicle.translation().norm();
+  if (distance < kSamePlace) {
+    filter.updateHeight(stretch.anchor, 0.0, options.submaps.height_sigma_m + 0.01 * distance,
+                        0.999, view.anchor);
+  }
+  addLoopEdge(stretch, fit, view);
+}
+
+void FusedMapper::Impl::readCompass(const SemanticFrame& frame, const View& view) {
+  const double expected = poseOf(view).angle();
+  const std::optional<double> heading = compass.read(frame, expected, view.travelled);
+  if (!heading) return;
+  const FilterUpdate update = filter.updateHeading(*heading, options.compass.sigma_deg * kDegree,
+                                                   options.submaps.gate_probability, view.anchor);
+  if (!update.accepted) return;
+  ++statistics.headings;
+  corrected = true;
+}
+
+void FusedMapper::Impl::registerFrameToSubmaps(const SemanticFrame& frame, const View& view) {
+  // The oldest stretch of this passage that still overlaps, and the nearest of an earlier one.
+  std::optional<std::size_t> recent;
+  std::optional<std::size_t> earlier;
+  double nearest = 1e9;
+  const Eigen::Vector2d& at = frame.labels.geometry.center;
+  for (std::size_t i = 0; i + 1 < stretches.size(); ++i) {
+    const Stretch& s = stretches[i];
+    if (!filter.hasAnchor(s.anchor) || s.submap.frames() == 0) continue;
+    const double age = view.travelled - s.end_m;
+    if (age < options.submaps.min_age_m) continue;
+    const Eigen::Vector2d p = between(s.anchor, view) * at;
+    constexpr double kMargin = 3.0;
+    if ((p - s.submap.low()).minCoeff() < -kMargin || (s.submap.high() - p).minCoeff() < -kMargin) {
+      continue;
+    }
+    // Floors above and below: a revisit is at the same height.
+    constexpr double kSameFloor = 1.5;
+    if (std::abs(filter.anchor(s.anchor).z - filter.anchor(view.anchor).z) > kSameFloor) continue;
+    if (age < options.submaps.revisit_age_m) {
+      if (!recent) recent = i;
+      continue;
+    }
+    const Eigen::Vector2d middle = 0.5 * (s.submap.low() + s.submap.high());
+    const double distance = (p - middle).norm();
+    if (distance >= nearest) continue;
+    nearest = distance;
+    earlier = i;
+  }
+  if (recent) tryStretch(frame, view, *recent, false);
+  if (earlier) tryStretch(frame, view, *earlier, true);
+}
+
+}  // namespace parkade
