@@ -122,6 +122,14 @@ void Document::text(const Eigen::Vector2d& position, std::string_view text,
                        escaped(text));
 }
 
+void Document::image(const Eigen::Vector2d& corner, const Eigen::Vector2d& size,
+                     std::string_view address) {
+  body_ += fmt::format(
+      "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" "
+      "href=\"{}\"/>\n",
+      number(corner.x()), number(corner.y()), number(size.x()), number(size.y()), escaped(address));
+}
+
 void Document::beginClip(const Eigen::Vector2d& corner, const Eigen::Vector2d& size) {
   ++clips_;
   body_ += fmt::format(

@@ -27,6 +27,8 @@ class Document {
   /// Text is escaped; the class sets its anchor. Turned a quarter to the left where upright is not.
   void text(const Eigen::Vector2d& position, std::string_view text, std::string_view css_class,
             bool vertical = false);
+  /// A picture given as an address, such as a data: URI; it fills the rectangle.
+  void image(const Eigen::Vector2d& corner, const Eigen::Vector2d& size, std::string_view address);
   /// What follows is hidden outside the rectangle, until endClip().
   void beginClip(const Eigen::Vector2d& corner, const Eigen::Vector2d& size);
   void endClip();

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/eval/bench_tables.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace parkade {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+BenchRecord record(const std::string& route, const std::string& method, double rmse, int seed = 1) {
+  BenchRecord r;
+  r.garage = "paper";
+  r.route = route;
+  r.method = method;
+  r.seed = seed;
+  r.figures = {{"ape.rmse", rmse}, {"ape_aligned.rmse", 0.5 * rmse}};
+  return r;
+}
+
+const std::vector<BenchMethod> kMethods = {{"vis1", "vis, one camera", false, true},
+                                           {"avp-slam", "avp-slam", true, false},
+                                           {"fused", "fused", true, true}};
+
+TEST(BenchTables, PaperTablesHoldItsFiguresAndOurs) {
+  std::vector<BenchRecord> records;
+  for (int i = 1; i <= 5; ++i) {
+    records.push_back(record("test" + std::to_string(i), "fused", 0.01 * i));
+  }
+  const std::vector<TextTable> tables = paperTables(records, kMethods);
+  ASSERT_EQ(tables.size(), 2u);
+  EXPECT_THAT(tables[0].rows[2],
+              ElementsAre("Paper: Ours", "0.14", "0.19", "0.21", "0.28", "0.15", "0.19"));
+  EXPECT_THAT(tables[0].rows[3],
+              ElementsAre("Parkade: fused", "0.010", "0.020", "0.030", "0.040", "0.050", "0.030"));
+  EXPECT_THAT(tables[0].rows[4], ElementsAre("Parkade: fused, SE(3)-aligned", "0.005", "0.010",
+                                             "0.015", "0.020", "0.025", "0.015"));
+  EXPECT_EQ(tables[1].rows.size(), 5u);
+}
+
+TEST(BenchTables, MeanOverSomeRoutesSaysSo) {
+  BenchRecord bad = record("test2", "fused", 9.0);
+  bad.failed = true;
+  bad.reason = "no pose";
+  const std::vector<BenchRecord> records{record("test1", "fused", 0.1), bad};
+  const TextTable table = paperTables(records, kMethods)[0];
+  EXPECT_THAT(table.rows[3],
+              ElementsAre("Parkade: fused", "0.100", "failed", "-", "-", "-", "0.100 (1 of 5)"));
+  EXPECT_THAT(plainText(detailTables(records, kMethods)[0]), HasSubstr("failed: no pose"));
+}
+
+TEST(BenchTables, SeedsGiveMeanSpreadAndWorst) {
+  const std::vector<BenchRecord> records{record("test1", "vis1", 0.1, 1),
+                                         record("test1", "vis1", 0.3, 2)};
+  const TextTable table = paperTables(records, kMethods)[1];
+  EXPECT_EQ(table.rows[3][1], "0.200 ± 0.100 (0.300)");
+}
+
+TEST(BenchTables, SweepsAndGaragesHaveTablesOfTheirOwn) {
+  BenchRecord dark = record("test1", "fused", 0.4);
+  dark.condition = "10 lux";
+  BenchRecord other = record("random", "fused", 0.2);
+  other.garage = "random 5000";
+  EXPECT_THAT(paperTables({dark, other}, kMethods), IsEmpty());
+  const std::vector<TextTable> tables = detailTables({dark, other}, kMethods);
+  ASSERT_EQ(tables.size(), 3u);
+  EXPECT_EQ(tables[0].title, "Random garages");
+  EXPECT_THAT(tables[0].rows[0],
+              ElementsAre("as it is", "fused", "1", "0", "0.200", "0.200", "0.200", "0.100", "-"));
+  EXPECT_EQ(tables[1].rows[0][0], "10 lux");
+}
+
+TEST(BenchTables, TextsOfEveryLength) {
+  const TextTable table{"T", "note", {"name", "m"}, {{"ä|b", "1.0"}, {"c"}}};
+  EXPECT_EQ(plainText(table), "T\nname    m\n---------\nä|b   1.0\nc\nnote\n");
+  EXPECT_EQ(markdown(table),
+            "### T\n\n| name | m |\n|---|---:|\n| ä\\|b | 1.0 |\n| c |  |\n\nnote\n");
+}
+
+}  // namespace
+}  // namespace parkade

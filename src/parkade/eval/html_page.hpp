@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "parkade/eval/text_table.hpp"
+
+namespace parkade {
+
+/// Base64 of RFC 4648.
+std::string base64(std::string_view bytes);
+
+/// The bytes as a data: URI; type as "image/png".
+std::string dataUri(std::string_view type, std::string_view bytes);
+
+/// One page that needs nothing but itself: no script, no network, all pictures within. Readable
+/// from 390 pixels of width on: figures stand side by side where there is room, and wide tables
+/// scroll.
+class HtmlPage {
+ public:
+  explicit HtmlPage(std::string_view title);
+
+  void section(std::string_view title);
+  void paragraph(std::string_view text);
+  void table(const TextTable& table);
+  /// The same, folded up until it is clicked.
+  void foldedTable(const TextTable& table);
+  /// Figures between beginFigures() and endFigures() share rows of two.
+  void beginFigures();
+  void endFigures();
+  /// An SVG document (svg.hpp), as a picture of its own: its styles and ids stay within.
+  void svg(std::string_view document, std::string_view caption);
+  /// A PNG or JPEG file's bytes.
+  void picture(std::string_view bytes, std::string_view caption);
+
+  /// The finished page.
+  [[nodiscard]] std::string str() const;
+
+ private:
+  void figure(const std::string& address, std::string_view caption);
+  void tableBody(const TextTable& table);
+  std::string body_;
+};
+
+}  // namespace parkade
