@@ -276,6 +276,30 @@ void drawSlot(Picture& picture, const MapSlot& slot) {
   }
 }
 
+// What drawMap() shows, from the lower left to the upper right edge, metres.
+struct PictureArea {
+  Eigen::Vector2d low;
+  Eigen::Vector2d high;
+};
+
+PictureArea pictureArea(const ParkingMap& map) {
+  constexpr double kFar = std::numeric_limits<double>::max();
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(kFar);
+  Eigen::Vector2d high = Eigen::Vector2d::Constant(-kFar);
+  if (const std::optional<LayeredGrid::Bounds> bounds = map.grid.bounds()) {
+    low = map.grid.resolution() * bounds->min.cast<double>();
+    high = map.grid.resolution() * (bounds->max + Eigen::Vector2i::Ones()).cast<double>();
+  }
+  for (const MapSlot& slot : map.slots) {
+    for (const Eigen::Vector2d& corner : slot.corners) {
+      low = low.cwiseMin(corner);
+      high = high.cwiseMax(corner);
+    }
+  }
+  if (low.x() > high.x()) low = high = Eigen::Vector2d::Zero();  // an empty map
+  return {low, high};
+}
+
 }  // namespace
 
 Status exportNav2(const ParkingMap& map, GridLayer layer, const std::string& folder) {
@@ -349,20 +373,7 @@ Status exportLanelet2(const ParkingMap& map, const std::string& path) {
 }
 
 Result<cv::Mat> drawMap(const ParkingMap& map, double metres_per_px) {
-  constexpr double kFar = std::numeric_limits<double>::max();
-  Eigen::Vector2d low = Eigen::Vector2d::Constant(kFar);
-  Eigen::Vector2d high = Eigen::Vector2d::Constant(-kFar);
-  if (const std::optional<LayeredGrid::Bounds> bounds = map.grid.bounds()) {
-    low = map.grid.resolution() * bounds->min.cast<double>();
-    high = map.grid.resolution() * (bounds->max + Eigen::Vector2i::Ones()).cast<double>();
-  }
-  for (const MapSlot& slot : map.slots) {
-    for (const Eigen::Vector2d& corner : slot.corners) {
-      low = low.cwiseMin(corner);
-      high = high.cwiseMax(corner);
-    }
-  }
-  if (low.x() > high.x()) low = high = Eigen::Vector2d::Zero();  // an empty map
+  const auto [low, high] = pictureArea(map);
   const Eigen::Vector2d size = ((high - low) / metres_per_px).cwiseMax(1.0);
   if (const Status fits = checkPictureSize(size.x(), size.y()); !fits) return fits.error();
   Picture picture{cv::Mat(static_cast<int>(std::ceil(size.y())),
@@ -384,6 +395,11 @@ Result<cv::Mat> drawMap(const ParkingMap& map, double metres_per_px) {
   }
   for (const MapSlot& slot : map.slots) drawSlot(picture, slot);
   return picture.image;
+}
+
+Eigen::Vector2d mapPictureCorner(const ParkingMap& map) {
+  const PictureArea area = pictureArea(map);
+  return {area.low.x(), area.high.y()};
 }
 
 }  // namespace parkade

@@ -31,4 +31,7 @@ Status exportLanelet2(const ParkingMap& map, const std::string& path);
 /// ones red, unsure ones yellow. Fails where the map is too wide for one picture.
 Result<cv::Mat> drawMap(const ParkingMap& map, double metres_per_px = 0.05);
 
+/// Where the upper left edge of that picture lies, metres.
+Eigen::Vector2d mapPictureCorner(const ParkingMap& map);
+
 }  // namespace parkade
