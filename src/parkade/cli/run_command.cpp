@@ -13,6 +13,9 @@
 #include "parkade/cli/command.hpp"
 #include "parkade/cli/open_source.hpp"
 #include "parkade/cli/run_outputs.hpp"
+#ifdef PARKADE_WITH_REPORT
+#include "parkade/cli/run_report.hpp"
+#endif
 #include "parkade/core/options.hpp"
 #include "parkade/core/progress.hpp"
 #include "parkade/io/file.hpp"
@@ -38,7 +41,7 @@ constexpr const char* kFooter =
     "frame\n"
     "set from the start on, as known at its instant), trajectory_vio.tum, health.csv, "
     "timing.json,\n"
-    "metrics.json and config.yaml; with --final also trajectory_final.tum.\n"
+    "metrics.json, config.yaml and report.html; with --final also trajectory_final.tum.\n"
     "\n"
     "'parkade run --help-options' lists every option that --set and --config take.\n"
     "\n"
@@ -87,6 +90,11 @@ Status runSequence(const RunArguments& arguments) {
     images.emplace(arguments.debug_images, opened->rig);
     (*run)->addObserver(&*images);
   }
+#ifdef PARKADE_WITH_REPORT
+  const SensorSourceInfo& info = opened->source->info();
+  ReportPictures pictures(arguments.out, opened->rig, info.start_ns, info.end_ns);
+  (*run)->addObserver(&pictures);
+#endif
   ProgressPrinter progress("run");
   const Status outcome = (*run)->run(*opened->source, progress.callback());
   progress.finish();
@@ -104,6 +112,13 @@ Status runSequence(const RunArguments& arguments) {
   if (!written) return written;
   if (Status saved = writeMap(arguments.out, arguments.source.spec, **run); !saved) return saved;
   const RunSummary& summary = (*run)->summary();
+#ifdef PARKADE_WITH_REPORT
+  if (!pictures.status()) return pictures.status();
+  if (summary.poses > 0) {
+    const Status page = writeRunReport(arguments.out, joinPath(arguments.out, "report.html"));
+    if (!page) return page;
+  }
+#endif
   fmt::print("{}", timingTable(summary));
   fmt::print("{} frame sets, {} poses, {:.0f} tracks per frame set; wrote {}\n", summary.frame_sets,
              summary.poses, summary.mean_tracks, arguments.out);

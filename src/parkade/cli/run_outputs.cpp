@@ -24,9 +24,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 8> kRunFiles = {
-    "map.db",     "trajectory.tum", "trajectory_vio.tum", "trajectory_final.tum",
-    "health.csv", "timing.json",    "metrics.json",       "config.yaml"};
+constexpr std::array<const char*, 11> kRunFiles = {
+    "map.db",      "trajectory.tum",      "trajectory_vio.tum",   "trajectory_final.tum",
+    "health.csv",  "timing.json",         "metrics.json",         "config.yaml",
+    "report.html", "pictures/tracks.jpg", "pictures/stitched.jpg"};
 constexpr const char* kConfigHeading = "# Effective configuration of 'parkade run'";
 
 bool isRunFolder(const fs::path& folder) {

@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/cli/bench_report.hpp"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+
+#include "parkade/cli/eval_map.hpp"
+#include "parkade/cli/map_truth_file.hpp"
+#include "parkade/eval/charts.hpp"
+#include "parkade/eval/evaluation.hpp"
+#include "parkade/eval/html_page.hpp"
+#include "parkade/eval/map_picture.hpp"
+#include "parkade/io/file.hpp"
+#include "parkade/io/image_file.hpp"
+#include "parkade/io/trajectory_io.hpp"
+#include "parkade/sim/world/garage_json.hpp"
+#include "parkade/sim/world/plan_image.hpp"
+
+namespace parkade::cli {
+namespace {
+
+svg::Points groundPoints(const Trajectory& poses) {
+  svg::Points points;
+  for (const StampedPose& pose : poses) {
+    points.emplace_back(pose.T_world_body.translation().head<2>());
+  }
+  return points;
+}
+
+std::optional<GroundPicture> planPicture(const std::string& sequence) {
+  const Result<sim::Garage> garage = sim::readGarageTruth(joinPath(sequence, "truth/garage.json"));
+  if (!garage) return std::nullopt;
+  constexpr double kPxPerMetre = 10.0;
+  constexpr double kMargin = 1.0;  // m, of drawPlan()
+  const cv::Mat plan = sim::drawPlan(*garage, kPxPerMetre);
+  ImageEncoding jpeg;
+  jpeg.jpeg_quality = 80;
+  const Result<std::string> bytes = encodeImage(plan, jpeg);
+  if (!bytes) return std::nullopt;
+  return GroundPicture{dataUri("image/jpeg", *bytes),
+                       {garage->min.x() - kMargin, garage->max.y() + kMargin},
+                       Eigen::Vector2d(plan.cols, plan.rows) / kPxPerMetre};
+}
+
+// The map of a run drawn on the truth, as PNG bytes; nothing where there is none.
+std::string mapErrors(const JudgedRun& run) {
+  if (!std::filesystem::is_regular_file(joinPath(run.folder, "map.db"))) return "";
+  const Result<MapTruth> truth = readMapTruth(run.sequence);
+  if (!truth) return "";
+  const Result<PlacedMap> placed = loadPlacedMap(run.folder, truth->driven);
+  if (!placed) return "";
+  const MapEvaluation evaluation = evaluateMap(placed->map, placed->T_truth_map, *truth);
+  const Result<cv::Mat> picture = drawMapErrors(placed->map, *truth, evaluation);
+  if (!picture) return "";
+  ImageEncoding png;
+  png.png = true;
+  png.png_level = 9;
+  const Result<std::string> bytes = encodeImage(*picture, png);
+  return bytes ? *bytes : "";
+}
+
+struct DriveCharts {
+  std::vector<ChartLine> ways;
+  std::vector<ChartLine> errors;
+  std::vector<ChartBar> speeds;
+};
+
+void addRun(const JudgedRun& run, const Trajectory& truth, DriveCharts& charts) {
+  const Result<TrajectoryFile> estimate = readTrajectory(run.trajectory);
+  if (!estimate) return;
+  EvaluationOptions options;
+  options.align = "origin";
+  const Result<Evaluation> e = evaluate(estimate->poses, truth, options);
+  if (!e) return;
+  charts.ways.push_back({run.record.method, groundPoints(e->estimate), false});
+  ChartLine errors{run.record.method, {}, false};
+  for (std::size_t i = 0; i < e->pairs.estimate.size(); ++i) {
+    errors.points.emplace_back(toSeconds(e->pairs.estimate[i].t_ns - truth.front().t_ns),
+                               e->absolute.translation[i]);
+  }
+  charts.errors.push_back(std::move(errors));
+  const double factor = run.record.figure("timing.real_time_factor");
+  if (factor > 0.0) {
+    charts.speeds.push_back({run.record.method, factor, -1.0, fmt::format("{:.2f}", factor)});
+  }
+}
+
+void addPictures(const JudgedRun& run, HtmlPage& page) {
+  const auto add = [&](const char* name, const std::string& caption) {
+    const Result<std::string> bytes = readFile(joinPath(run.folder, name));
+    if (bytes) page.picture(*bytes, caption);
+  };
+  add("pictures/tracks.jpg",
+      fmt::format("What {} follows half way: from blue (new) to red (long followed)",
+                  run.record.method));
+  add("pictures/stitched.jpg", "All its cameras stitched on the ground; ahead is up");
+}
+
+void addDrive(const std::vector<const JudgedRun*>& runs, HtmlPage& page) {
+  const BenchRecord& first = runs.front()->record;
+  page.section(fmt::format("{} / {}{}, seed {}", first.garage, first.route,
+                           first.condition.empty() ? "" : ", " + first.condition, first.seed));
+  const JudgedRun* shown = nullptr;
+  for (const JudgedRun* run : runs) {
+    if (run->record.failed) {
+      page.paragraph(fmt::format("{} failed: {}", run->record.method, run->record.reason));
+    } else {
+      shown = run;  // the last of the methods is the whole system
+    }
+  }
+  if (shown == nullptr) return;
+  const Result<TrajectoryFile> truth = readReference(shown->sequence);
+  if (!truth || truth->poses.empty()) return;
+  DriveCharts charts;
+  for (const JudgedRun* run : runs) {
+    if (!run->record.failed) addRun(*run, truth->poses, charts);
+  }
+  charts.ways.push_back({"truth", groundPoints(truth->poses), true});
+  page.beginFigures();
+  page.svg(groundChart("Ways over the plan, m", planPicture(shown->sequence), charts.ways),
+           "Estimated ways, first poses joined with the truth's (the paper's Fig. 9)");
+  page.svg(lineChart("Position error, m", "time from the beginning, s", charts.errors),
+           "Position error over time");
+  if (!charts.speeds.empty()) {
+    page.svg(barChart("Real-time factor (1: as fast as the car drove)", charts.speeds),
+             "Processing time / recorded time");
+  }
+  for (const JudgedRun* run : runs) {
+    if (run->record.failed) continue;
+    const std::string map = mapErrors(*run);
+    if (map.empty()) continue;
+    page.picture(map, fmt::format("The map of {} on the truth. Paint: both grey, the map's alone "
+                                  "red, the truth's alone blue. Slots: found green, missed orange, "
+                                  "wrong magenta; corner errors ten times as long, dark red",
+                                  run->record.method));
+    break;  // one is enough for a page
+  }
+  addPictures(*shown, page);
+  page.endFigures();
+}
+
+}  // namespace
+
+Status writeBenchReport(const PaperBenchOptions& options, const std::vector<JudgedRun>& runs,
+                        const std::vector<TextTable>& tables, const std::string& setting) {
+  HtmlPage page("Parkade: bench");
+  page.paragraph(setting);
+  for (const TextTable& table : tables) page.table(table);
+  for (std::size_t begin = 0; begin < runs.size();) {
+    const BenchRecord& first = runs[begin].record;
+    std::vector<const JudgedRun*> of_drive;
+    std::size_t end = begin;
+    for (; end < runs.size(); ++end) {
+      const BenchRecord& r = runs[end].record;
+      if (r.garage != first.garage || r.route != first.route || r.seed != first.seed ||
+          r.condition != first.condition) {
+        break;
+      }
+      of_drive.push_back(&runs[end]);
+    }
+    addDrive(of_drive, page);
+    begin = end;
+  }
+  return writeFileAtomic(joinPath(options.out, "report.html"), page.str());
+}
+
+}  // namespace parkade::cli

@@ -1,0 +1,229 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/cli/bench_runs.hpp"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+
+#include "parkade/camera/rig.hpp"
+#include "parkade/cli/child_process.hpp"
+#include "parkade/cli/eval_map.hpp"
+#include "parkade/cli/map_truth_file.hpp"
+#include "parkade/cli/sim_record.hpp"
+#include "parkade/cli/sim_truth.hpp"
+#include "parkade/core/random.hpp"
+#include "parkade/eval/map_report.hpp"
+#include "parkade/eval/report.hpp"
+#include "parkade/io/file.hpp"
+#include "parkade/io/sequence_writer.hpp"
+#include "parkade/io/trajectory_io.hpp"
+
+namespace parkade::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+std::uint64_t hashOf(const std::string& bytes, std::uint64_t start = 0) {
+  std::uint64_t hash = start;
+  for (const char c : bytes) hash = hash64(hash, static_cast<unsigned char>(c));
+  return hash;
+}
+
+// Another build gives other figures: they must not stand in one table.
+std::uint64_t programHash() {
+  static const std::uint64_t kHash = [] {
+    const Result<std::string> bytes = readFile(programPath());
+    return bytes ? std::hash<std::string>{}(*bytes) : 0U;
+  }();
+  return kHash;
+}
+
+std::string textOf(const std::string& path) {
+  const Result<std::string> text = readFile(path);
+  return text ? *text : "";
+}
+
+// What decides the figures of a run.
+std::string keyOf(const BenchVariant& variant, const std::string& cameras,
+                  const std::string& sequence, const std::string& trajectory) {
+  std::string text = variant.run_method + "\n" + cameras + "\n";
+  for (const std::string& setting : variant.settings) text += setting + "\n";
+  text += textOf(joinPath(sequence, "spec.yaml"));
+  if (!variant.import_folder.empty()) text += textOf(trajectory);
+  return fmt::format("{:016x}", hashOf(text, programHash()));
+}
+
+void flatten(const Json& json, const std::string& path, std::map<std::string, double>& figures) {
+  if (json.is_object()) {
+    for (const auto& [name, value] : json.items()) {
+      flatten(value, path.empty() ? name : path + "." + name, figures);
+    }
+  } else if (json.is_number()) {
+    figures[path] = json.get<double>();
+  }
+}
+
+JudgedRun emptyRun(const BenchDrive& drive, const BenchVariant& variant) {
+  JudgedRun run;
+  run.record.garage = drive.garage;
+  run.record.route = drive.route;
+  run.record.condition = drive.condition;
+  run.record.method = variant.method.name;
+  run.record.seed = drive.spec.seed;
+  run.json = {{"garage", drive.garage},
+              {"route", drive.route},
+              {"condition", drive.condition},
+              {"seed", drive.spec.seed},
+              {"method", variant.method.name}};
+  return run;
+}
+
+// Record and figures from the JSON of a run.
+void readRecord(JudgedRun& run) {
+  run.record.failed = run.json.value("status", "failed") != "done";
+  run.record.reason = run.json.value("reason", "");
+  run.record.figures.clear();
+  flatten(run.json, "", run.record.figures);
+}
+
+Result<Json> judgeTrajectory(const std::string& trajectory, const std::string& sequence) {
+  const Result<TrajectoryFile> estimate = readTrajectory(trajectory);
+  if (!estimate) return estimate.error();
+  const Result<TrajectoryFile> truth = readReference(sequence);
+  if (!truth) return truth.error();
+  EvaluationOptions options;
+  options.align = "origin";
+  const Result<Evaluation> anchored = evaluate(estimate->poses, truth->poses, options);
+  if (!anchored) return anchored.error();
+  options.align = "se3";
+  const Result<Evaluation> aligned = evaluate(estimate->poses, truth->poses, options);
+  if (!aligned) return aligned.error();
+  Json json = Json::parse(evaluationJson(*anchored, {trajectory, sequence}));
+  const Json other = Json::parse(evaluationJson(*aligned, {trajectory, sequence}));
+  json["ape_aligned"] = other["ape"];
+  json["ape_aligned_heading_deg"] = other["ape_heading_deg"];
+  return json;
+}
+
+Result<Json> judgeMap(const std::string& folder, const std::string& sequence) {
+  const Result<MapTruth> truth = readMapTruth(sequence);
+  if (!truth) return truth.error();
+  const Result<PlacedMap> placed = loadPlacedMap(folder, truth->driven);
+  if (!placed) return placed.error();
+  return Json::parse(mapEvaluationJson(evaluateMap(placed->map, placed->T_truth_map, *truth, {})));
+}
+
+Status judge(JudgedRun& run) {
+  const Result<Json> accuracy = judgeTrajectory(run.trajectory, run.sequence);
+  if (!accuracy) return accuracy.error();
+  for (const auto& [name, value] : accuracy->items()) run.json[name] = value;
+  const std::string timing = textOf(joinPath(run.folder, "timing.json"));
+  if (!timing.empty()) run.json["timing"] = Json::parse(timing, nullptr, false);
+  if (fs::is_regular_file(joinPath(run.folder, "map.db"))) {
+    const Result<Json> map = judgeMap(run.folder, run.sequence);
+    if (map) {
+      run.json["map"] = *map;
+    } else {
+      run.json["map_reason"] = map.error().message;
+    }
+  }
+  return {};
+}
+
+Status execute(const PaperBenchOptions& options, const BenchVariant& variant,
+               const std::string& cameras, const JudgedRun& run) {
+  if (!variant.import_folder.empty()) {
+    if (fs::is_regular_file(run.trajectory)) return {};
+    return Error{fmt::format("{}: no such file", run.trajectory)};
+  }
+  std::vector<std::string> arguments{
+      "run",    run.sequence, "--method",  variant.run_method,
+      "--out",  run.folder,   "--threads", std::to_string(options.threads),
+      "--force"};
+  if (!cameras.empty()) arguments.insert(arguments.end(), {"--cameras", cameras});
+  for (const std::string& setting : variant.settings) {
+    arguments.insert(arguments.end(), {"--set", setting});
+  }
+  return runProgram(arguments, run.folder + ".log");
+}
+
+Result<std::string> camerasOf(const std::string& sequence, int count) {
+  if (count == 0) return std::string();
+  const Result<Rig> rig = readRig(joinPath(sequence, "rig.yaml"));
+  if (!rig) return rig.error();
+  std::vector<std::string> names;
+  for (const RigCamera& camera : rig->cameras) names.push_back(camera.name);
+  return pickCameras(names, count);
+}
+
+}  // namespace
+
+Result<std::string> provideSequence(const PaperBenchOptions& options, const BenchDrive& drive) {
+  if (!options.sequences.empty()) {
+    const std::string given = joinPath(options.sequences, drive.name);
+    if (inspectSequence(given).finished) return given;
+  }
+  const std::string folder = joinPath(joinPath(options.out, "sequences"), drive.name);
+  const std::string spec_path = joinPath(folder, "spec.yaml");
+  const bool same = textOf(spec_path) == specText(drive.spec);
+  if (same && inspectSequence(folder).finished) return folder;
+  const auto simulation = sim::Simulation::make(drive.spec);
+  if (!simulation) return simulation.error();
+  RecordOptions record;
+  record.out = folder;
+  record.resume = same;
+  record.force = !same;
+  const Status recorded = recordSequence(*simulation, record);
+  if (!recorded) return recorded.error();
+  return folder;
+}
+
+JudgedRun failedRun(const BenchDrive& drive, const BenchVariant& variant,
+                    const std::string& reason) {
+  JudgedRun run = emptyRun(drive, variant);
+  run.json["status"] = "failed";
+  run.json["reason"] = reason;
+  readRecord(run);
+  return run;
+}
+
+JudgedRun performRun(const PaperBenchOptions& options, const BenchDrive& drive,
+                     const BenchVariant& variant, const std::string& sequence) {
+  JudgedRun run = emptyRun(drive, variant);
+  const std::string runs = joinPath(joinPath(options.out, "runs"), drive.name);
+  run.sequence = sequence;
+  run.folder = joinPath(runs, variant.method.name);
+  const bool imported = !variant.import_folder.empty();
+  run.trajectory = imported ? joinPath(variant.import_folder, drive.name + ".tum")
+                            : joinPath(run.folder, "trajectory.tum");
+  const Result<std::string> cameras = camerasOf(sequence, variant.cameras);
+  if (!cameras) return failedRun(drive, variant, cameras.error().message);
+  const std::string key = keyOf(variant, *cameras, sequence, run.trajectory);
+  const std::string mark = joinPath(run.folder, "bench.json");
+  Json before = Json::parse(textOf(mark), nullptr, false);
+  if (!options.again && before.is_object() && before.value("key", "") == key) {
+    run.json = std::move(before["run"]);
+    run.kept = true;
+    readRecord(run);
+    return run;
+  }
+  std::error_code code;
+  fs::remove(mark, code);
+  Status status = makeFolders(run.folder);
+  if (status) status = execute(options, variant, *cameras, run);
+  if (status) status = judge(run);
+  run.json["status"] = status ? "done" : "failed";
+  if (!status) run.json["reason"] = status.error().message;
+  readRecord(run);
+  // A failure is not kept: the next bench tries again.
+  if (status) {
+    const Json kept{{"key", key}, {"run", run.json}};
+    status = writeFileAtomic(mark, kept.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    if (!status) return failedRun(drive, variant, status.error().message);
+  }
+  return run;
+}
+
+}  // namespace parkade::cli
