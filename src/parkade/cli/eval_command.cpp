@@ -12,6 +12,9 @@
 #ifdef PARKADE_WITH_EVAL_MAP
 #include "parkade/cli/eval_map.hpp"
 #endif
+#ifdef PARKADE_WITH_REPORT
+#include "parkade/cli/run_report.hpp"
+#endif
 #include "parkade/eval/plot.hpp"
 #include "parkade/eval/report.hpp"
 #include "parkade/io/file.hpp"
@@ -30,6 +33,7 @@ struct EvalArguments {
   std::string times;
   std::string json;
   std::string plot;
+  std::string report;
   std::string plane = "auto";
   EvaluationOptions options;
 };
@@ -138,6 +142,16 @@ Status evaluateFiles(const EvalArguments& arguments) {
                                   evaluationSvg(*evaluation, reference->poses, labels, plane));
     if (!status) return status;
   }
+#ifdef PARKADE_WITH_REPORT
+  if (!arguments.report.empty()) {
+    if (!runTrajectory(arguments.trajectory)) {
+      return Error{fmt::format("{}: --report is about the folder of a run", arguments.trajectory)};
+    }
+    const Status page = writeRunReport(arguments.trajectory, arguments.report,
+                                       ReportTruth{*evaluation, reference->poses});
+    if (!page) return page;
+  }
+#endif
   fmt::print("{}", evaluationTable(*evaluation, labels));
   return {};
 }
@@ -213,6 +227,10 @@ void addEvalCommand(CLI::App& app, int& exit_code) {
   command->add_option("--json", a->json, "Write the figures to this file")->group("Output");
   command->add_option("--plot", a->plot, "Draw trajectories and errors to this SVG file")
       ->group("Output");
+#ifdef PARKADE_WITH_REPORT
+  command->add_option("--report", a->report, "Write a run's page with its errors to this HTML file")
+      ->group("Output");
+#endif
   command->add_option("--plane", a->plane, "Plane of the plot's top view")
       ->check(CLI::IsMember({"auto", "xy", "xz", "yz"}))
       ->capture_default_str()

@@ -226,12 +226,6 @@ void addErrors(const ReportTruth& truth, HtmlPage& page) {
   page.svg(
       lineChart("Heading error, deg", "time from the first pose, s", {{"heading", heading, false}}),
       "Heading error over time");
-  if (!truth.map_picture.empty()) {
-    page.picture(truth.map_picture,
-                 "The map on the truth. Paint: both grey, the map's alone red, the truth's alone "
-                 "blue. Slots: found green, missed orange, wrong magenta; corner errors ten times "
-                 "as long, dark red");
-  }
   page.endFigures();
 }
 

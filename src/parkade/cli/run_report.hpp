@@ -36,8 +36,6 @@ class ReportPictures : public PipelineObserver {
 struct ReportTruth {
   Evaluation evaluation;  ///< of the run's trajectory
   Trajectory reference;
-  std::string map_table;    ///< text; may be empty
-  std::string map_picture;  ///< PNG bytes; may be empty
 };
 
 /// Writes a page about a run from the files of its folder: way, map, slots, health, timing,
