@@ -131,7 +131,7 @@ Json tableJson(const TextTable& table) {
 
 std::string settingText(const PaperBenchOptions& options) {
   std::string text =
-      fmt::format("Simulated garage(s): {}; {} pixels, {} threads, parkade {}.", options.garages,
+      fmt::format("Simulated garage(s): {}; {} pixel, {} threads, parkade {}.", options.garages,
                   options.fast || options.quick ? "one sample a" : "2 x 2 samples a",
                   options.threads, PARKADE_VERSION);
   if (!options.sequences.empty()) text += " Existing recordings were used where they were given.";

@@ -151,12 +151,9 @@ TextTable perRun(const std::string& title, const std::vector<BenchRecord>& recor
   const bool with_seed = severalSeeds(records);
   for (const BenchRecord& record : records) {
     Row row{driveName(record, with_seed), record.method};
-    if (record.failed) {
-      row.push_back("failed: " + record.reason);
-    } else {
-      for (const Column& column : columns) {
-        row.push_back(figureText(column.factor * record.figure(column.path), column.decimals));
-      }
+    for (const Column& column : columns) {
+      const double value = record.failed ? std::nan("") : record.figure(column.path);
+      row.push_back(figureText(column.factor * value, column.decimals));
     }
     table.rows.push_back(std::move(row));
   }
@@ -173,6 +170,12 @@ TextTable accuracyTable(const std::vector<BenchRecord>& records) {
                             {"RPE 10 m", "rpe.rmse", 3, 1.0},
                             {"coverage %", "coverage", 1, 100.0},
                             {"path m", "path_m", 0, 1.0}});
+  if (std::any_of(records.begin(), records.end(), [](const BenchRecord& r) { return r.failed; })) {
+    table.header.emplace_back("remark");
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      if (records[i].failed) table.rows[i].push_back("failed: " + records[i].reason);
+    }
+  }
   table.note =
       "First pose joined with the truth's, unless aligned (SE(3)). Definitions: "
       "docs/evaluation.md.";

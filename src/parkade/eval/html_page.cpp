@@ -29,7 +29,9 @@ constexpr const char* kStyle =
     "position:sticky;left:0;background:#fff}\n"
     ".failed{color:#b3261e;white-space:normal;min-width:12em}.note{font-size:.875em;color:#4a5563}"
     "\n"
-    "summary{cursor:pointer;font-weight:600}\n";
+    "summary{cursor:pointer;font-weight:600}\n"
+    "@media(max-width:600px){th,td{padding:4px 6px}"
+    "th:first-child,td:first-child{white-space:normal;max-width:7.5em}}\n";
 
 std::string escaped(std::string_view text) {
   std::string result;
