@@ -1,0 +1,153 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Parkade authors
+# SPDX-License-Identifier: Apache-2.0
+"""Drives `parkade bench` as a user does: a short drive, gates on its accuracy, going on, wrong options."""
+
+import html.parser
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PARKADE = sys.argv.pop(1)
+SECONDS = "3"
+GATE_M = 0.05
+GATE_DEG = 0.5
+
+
+def bench(*arguments):
+    return subprocess.run(
+        [PARKADE, "bench", *map(str, arguments)], capture_output=True, text=True, timeout=1400
+    )
+
+
+class BenchErrorTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="parkade_bench_")
+        self.addCleanup(folder.cleanup)
+        self.out = pathlib.Path(folder.name) / "out"
+
+    def test_wrong_options_are_named(self):
+        for arguments, code, words in [
+            ([], 1, ["--out"]),
+            (["--out", self.out, "--methods", "vis,magic"], 1, ["magic", "fused"]),
+            (["--out", self.out, "--routes", "test9"], 1, ["test9", "test1"]),
+            (["--out", self.out, "--garages", "castle"], 1, ["castle", "random:N"]),
+            (["--out", self.out, "--light", "bright"], 1, ["--light", "bright"]),
+            (["--out", self.out, "--cameras", "6"], 1, ["1..6"]),
+            (["--out", self.out, "--variant", "fused"], 1, ["NAME="]),
+            (["--out", self.out, "--variant", "vis=fused"], 1, ["'vis'"]),
+            (["--out", self.out, "--seeds", "0"], 2, ["--seeds"]),
+            (["nonsense", "--out", self.out], 2, ["nonsense"]),
+        ]:
+            with self.subTest(arguments=arguments):
+                result = bench(*arguments)
+                self.assertEqual(result.returncode, code, result.stderr)
+                for word in words:
+                    self.assertIn(word, result.stderr)
+                self.assertFalse(self.out.exists())
+
+    def test_semantics_stays_a_command_of_its_own(self):
+        result = bench("semantics", "--help")
+        self.assertEqual(result.returncode, 0)
+        self.assertIn("--samples", result.stdout)
+
+
+class PageParser(html.parser.HTMLParser):
+    """Gathers what a page would load, and tags left open."""
+
+    VOID = {"meta", "link", "img"}
+
+    def __init__(self):
+        super().__init__()
+        self.addresses = []
+        self.open = []
+
+    def handle_starttag(self, tag, attributes):
+        if tag not in self.VOID:
+            self.open.append(tag)
+        for name, value in attributes:
+            if name in ("src", "href"):
+                self.addresses.append(value)
+
+    def handle_endtag(self, tag):
+        assert self.open and self.open[-1] == tag, f"</{tag}> closes {self.open[-3:]}"
+        self.open.pop()
+
+
+class BenchTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory(prefix="parkade_bench_")
+        cls.addClassCleanup(cls.temporary.cleanup)
+        cls.out = pathlib.Path(cls.temporary.name) / "out"
+        cls.imports = pathlib.Path(cls.temporary.name) / "outside"
+        cls.imports.mkdir()
+        cls.arguments = ["--out", cls.out, "--routes", "test1", "--duration", SECONDS, "--fast"]
+        cls.arguments += ["--methods", "vis,fused", "--threads", "2"]
+        cls.arguments += ["--import", f"outside={cls.imports}"]
+        cls.result = bench(*cls.arguments)
+        cls.metrics = json.loads((cls.out / "metrics.json").read_text(encoding="utf-8"))
+        cls.runs = {run["method"]: run for run in cls.metrics["runs"]}
+
+    def check_page(self, path):
+        text = path.read_text(encoding="utf-8")
+        parser = PageParser()
+        parser.feed(text)
+        self.assertEqual(parser.open, [])
+        self.assertGreater(len(parser.addresses), 4)
+        for address in parser.addresses:
+            self.assertTrue(address.startswith("data:"), address[:60])
+        return text
+
+    def test_a_failed_run_is_a_row_that_says_so(self):
+        self.assertEqual(self.result.returncode, 1, self.result.stderr)
+        self.assertIn("1 of 3 runs failed", self.result.stderr)
+        self.assertEqual(self.runs["outside"]["status"], "failed")
+        self.assertIn("no such file", self.runs["outside"]["reason"])
+        self.assertIn("failed", (self.out / "tables.md").read_text(encoding="utf-8"))
+
+    def test_accuracy_gates(self):
+        for method in ["vis", "fused"]:
+            run = self.runs[method]
+            self.assertEqual(run["status"], "done", run.get("reason"))
+            print(
+                f"{method}: {run['ape']['rmse']:.4f} m over {run['path_m']:.1f} m, real-time "
+                f"factor {run['timing']['real_time_factor']:.2f}"
+            )
+            # The start of a route: errors are a few millimetres to centimetres there.
+            self.assertLess(run["ape"]["rmse"], GATE_M)
+            self.assertLess(run["ape_heading_deg"]["rmse"], GATE_DEG)
+            self.assertGreater(run["coverage"], 0.5)
+            self.assertGreater(run["timing"]["peak_memory_mb"], 10)
+
+    def test_tables_hold_the_paper_beside_ours(self):
+        for text in [self.result.stdout, (self.out / "tables.md").read_text(encoding="utf-8")]:
+            self.assertRegex(text, r"Paper: Ours\W+0\.14\W+0\.19\W+0\.21\W+0\.28\W+0\.15\W+0\.19")
+            self.assertRegex(text, r"Parkade: fused, all cameras\W+0\.\d\d\d")
+            self.assertIn("Table 3", text)
+
+    def test_pages_need_nothing_else(self):
+        text = self.check_page(self.out / "report.html")
+        self.assertIn("Table 2", text)
+        self.check_page(self.out / "runs" / "test1" / "fused" / "report.html")
+
+    def test_goes_on_where_it_stopped(self):
+        pictures = list((self.out / "sequences").rglob("*.jpg"))
+        stamps = {path: path.stat().st_mtime_ns for path in pictures}
+        (self.out / "runs" / "test1" / "vis" / "bench.json").unlink()
+        again = bench(*self.arguments)
+        self.assertEqual(len(re.findall(r"\(kept\)", again.stderr)), 1, again.stderr)
+        self.assertRegex(again.stderr, r"test1 fused: .*\(kept\)")
+        metrics = json.loads((self.out / "metrics.json").read_text(encoding="utf-8"))
+        rows = {run["method"]: run for run in metrics["runs"]}
+        self.assertEqual(rows["vis"]["ape"], self.runs["vis"]["ape"])
+        for path, stamp in stamps.items():
+            self.assertEqual(path.stat().st_mtime_ns, stamp)
+
+
+if __name__ == "__main__":
+    unittest.main()
