@@ -127,7 +127,8 @@ void addDrive(const std::vector<const JudgedRun*>& runs, HtmlPage& page) {
     page.svg(barChart("Real-time factor (1: as fast as the car drove)", charts.speeds),
              "Processing time / recorded time");
   }
-  for (const JudgedRun* run : runs) {
+  for (auto at = runs.rbegin(); at != runs.rend(); ++at) {  // the whole system comes last
+    const JudgedRun* run = *at;
     if (run->record.failed) continue;
     const std::string map = mapErrors(*run);
     if (map.empty()) continue;
