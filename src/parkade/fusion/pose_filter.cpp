@@ -205,12 +205,13 @@ FilterUpdate PoseFilter::updateHeight(std::int64_t anchor, double dz, double sig
 }
 
 FilterUpdate PoseFilter::updateTurn(std::int64_t anchor, double angle, double sigma,
-                                    double gate_probability) {
+                                    double gate_probability, std::int64_t of) {
   const Eigen::Index a = indexOf(anchor);
+  const Eigen::Index b = indexOf(of);
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(1, P_.cols());
-  H(0, 2) = 1.0;
-  H(0, kErrors * a + 2) = -1.0;
-  const double turned = poses_[0].T_world_vehicle.angle() -
+  H(0, kErrors * b + 2) = 1.0;
+  H(0, kErrors * a + 2) -= 1.0;
+  const double turned = poses_[static_cast<std::size_t>(b)].T_world_vehicle.angle() -
                         poses_[static_cast<std::size_t>(a)].T_world_vehicle.angle();
   return correct(Eigen::VectorXd::Constant(1, wrapAngle(angle - turned)), H,
                  Eigen::MatrixXd::Constant(1, 1, sigma * sigma), gate_probability);

@@ -60,8 +60,9 @@ class PoseFilter {
   /// The car (or another anchor) stands dz above where it stood at the anchor.
   FilterUpdate updateHeight(std::int64_t anchor, double dz, double sigma, double gate_probability,
                             std::int64_t of = kCar);
-  /// The car has turned by angle since the anchor.
-  FilterUpdate updateTurn(std::int64_t anchor, double angle, double sigma, double gate_probability);
+  /// The car, or another anchor, has turned by angle since the anchor.
+  FilterUpdate updateTurn(std::int64_t anchor, double angle, double sigma, double gate_probability,
+                          std::int64_t of = kCar);
   /// The heading in the world, of the car or of an anchor.
   FilterUpdate updateHeading(double angle, double sigma, double gate_probability,
                              std::int64_t of = kCar);

@@ -16,7 +16,8 @@ struct CompassOptions {
   double window_deg = 3.0;
   double min_share = 0.5;
   double reference_m = 10.0;
-  double sigma_deg = 1.5;
+  double reference_sigma_deg = 0.15;
+  double sigma_deg = 0.25;
 
   void visit(OptionVisitor& v) {
     v.field("enable", enable, "Take the rows of a garage for parallel or square to each other.");
@@ -29,11 +30,13 @@ struct CompassOptions {
     v.field("min_share", min_share, "ratio",
             "Share of the lines in view that must lie along the axes.", 0.0, 1.0);
     v.field("reference_m", reference_m, "m", "Way over which the axes are learned.", 0.5, 100.0);
-    v.field("sigma_deg", sigma_deg, "deg",
-            "Error of one heading by the axes. They come once a metre and repeat the axes' own "
-            "error: 200 of "
-            "them must not be surer than that.",
-            0.01, 10.0);
+    v.field("reference_sigma_deg", reference_sigma_deg, "deg",
+            "Error of the axes as learned, which all headings read off them share.", 0.001, 10.0);
+    v.field(
+        "sigma_deg", sigma_deg, "deg",
+        "Error of one heading by the axes, once a metre; neighbours in time see the same lines, "
+        "so more than their scatter.",
+        0.01, 10.0);
   }
 };
 

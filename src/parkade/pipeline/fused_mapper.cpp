@@ -91,7 +91,9 @@ void FusedMapper::Impl::beginStretch(const View& view) {
   turned_at_stretch = view.turned;
   ++statistics.anchors;
   if (static_cast<int>(filter.anchors().size()) > options.submaps.max_anchors) {
-    filter.removeAnchor(filter.anchors().front());
+    const auto oldest = std::find_if(filter.anchors().begin(), filter.anchors().end(),
+                                     [this](std::int64_t id) { return id != axes; });
+    filter.removeAnchor(*oldest);
   }
 }
 

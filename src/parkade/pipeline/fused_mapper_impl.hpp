@@ -71,6 +71,8 @@ class FusedMapper::Impl {
   FusedMapperOptions options;
   std::vector<Eigen::Vector3d> viewpoints;
   Compass compass;
+  std::int64_t axes = -1;     // heading reference of the filter, once the compass has learned
+  double axes_heading = 0.0;  // of that reference as it was then
   PoseFilter filter;
   std::optional<PoseEstimate> odometry;
   AnchoredHistory history;

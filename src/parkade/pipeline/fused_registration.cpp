@@ -109,8 +109,13 @@ void FusedMapper::Impl::readCompass(const SemanticFrame& frame, const View& view
   const double expected = poseOf(view).angle();
   const std::optional<double> heading = compass.read(frame, expected, view.travelled);
   if (!heading) return;
-  const FilterUpdate update = filter.updateHeading(*heading, options.compass.sigma_deg * kDegree,
-                                                   options.submaps.gate_probability, view.anchor);
+  if (axes < 0) {
+    axes = filter.addHeadingReference(options.compass.reference_sigma_deg * kDegree);
+    axes_heading = filter.anchor(axes).T_world_vehicle.angle();
+  }
+  const FilterUpdate update =
+      filter.updateTurn(axes, *heading - axes_heading, options.compass.sigma_deg * kDegree,
+                        options.submaps.gate_probability, view.anchor);
   if (!update.accepted) return;
   ++statistics.headings;
   corrected = true;
