@@ -163,7 +163,7 @@ class RunEurocTest(unittest.TestCase):
     def test_methods_that_need_wheels_say_so(self):
         for method in ("semantic", "avp-slam"):
             out = self.folder / method
-            result = parkade("run", EUROC, "--out", out, "--method", method, "--duration", 2)
+            result = parkade("run", EUROC, "--out", out, "--method", method, "--duration", 7)
             self.assertEqual(result.returncode, 1)
             self.assertIn("no pose", result.stderr)
             self.assertIn("no wheel speed", (out / "health.csv").read_text(encoding="utf-8"))
