@@ -19,6 +19,7 @@ constexpr int kTilePixels = kTile * kTile;
 constexpr int kMaxSamples = 4;
 constexpr float kSharp = 0.35F;     // rougher than this only floors mirror
 constexpr float kFaintest = 0.02F;  // mirror images weaker than this are not traced off the floor
+constexpr float kFaint = 0.06F;  // with one sample a pixel, floors that mirror less send fewer rays
 
 /// The samples of a tile: [pixel * samples + sample].
 struct TileSamples {
@@ -107,6 +108,7 @@ void FrameTracer::traceTile(int tile, TileSamples& out) const {
     for (int k = 0; k < kPacket; ++k) {
       const auto i = static_cast<std::size_t>(table_.slot(p, k));
       out.hits[i] = hitOf(*setup_.tracer, rays, k);
+      setup_.shader->prefetchTriangle(out.hits[i]);
       if (rays.valid[k] == 0) {
         out.hits[i].t = -1.0F;  // no ray at all: black
       }
@@ -171,7 +173,9 @@ void FrameTracer::shadeTile(int tile, const TileSamples& in, Radiance& out,
                             ReflectionBuffer* mirror) const {
   const int left = tile % table_.tilesX() * kTile;
   const int top = tile / table_.tilesX() * kTile;
-  const MirrorDensity density = samples_ > 1 ? MirrorDensity::kHalf : MirrorDensity::kQuarter;
+  for (int i = 0; i < kTilePixels * samples_; ++i) {
+    setup_.shader->prefetchVertices(in.hits[static_cast<std::size_t>(i)]);
+  }
   thread_local std::vector<MirrorRay> floor;
   thread_local std::vector<MirrorRay> other;
   floor.clear();
@@ -187,6 +191,8 @@ void FrameTracer::shadeTile(int tile, const TileSamples& in, Radiance& out,
         continue;
       }
       int place = 0;
+      const MirrorDensity density =
+          samples_ == 1 && main.weight < kFaint ? MirrorDensity::kEighth : MirrorDensity::kQuarter;
       if (main.surface.is_floor) {
         mirror->weights[pixel] = main.weight;
         place = mirrorPlace(density, x, y);
@@ -194,8 +200,7 @@ void FrameTracer::shadeTile(int tile, const TileSamples& in, Radiance& out,
           continue;
         }
       }
-      MirrorRay ray = makeMirrorRay(setup_.shader->lamps(), main.surface, main.direction,
-                                    main.weight, density, place);
+      MirrorRay ray = makeMirrorRay(main.surface, main.direction, main.weight, density, place);
       ray.pixel = static_cast<std::uint32_t>(pixel);
       (ray.from_floor ? floor : other).push_back(ray);
     }

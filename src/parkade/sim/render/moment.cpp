@@ -19,7 +19,8 @@ constexpr double kPi = std::numbers::pi;
 constexpr float kBeamCandela = 4000.0F;  // dipped, below the cut-off
 constexpr float kBeamReach = 30.0F;      // m
 constexpr float kBeamEdge = 0.7F;        // cosine of the lobe's half angle
-constexpr float kDarkest = 0.12F;        // light left below the middle of a car
+constexpr float kBeamWedge = 0.95F;  // rad: the lobe's half angle on the plan, with room for tilt
+constexpr float kDarkest = 0.12F;    // light left below the middle of a car
 
 bool inCone(const Eigen::Vector3f& center, float radius, const Eigen::Vector3f& eye,
             const Eigen::Vector3f& axis, float half_angle) {
@@ -85,6 +86,9 @@ bool Moment::showsIn(const Eigen::Vector3f& eye, const Eigen::Vector3f& axis,
 
 float Moment::floorShade(float x, float y) const {
   float shade = 1.0F;
+  if ((reach_grid.at(x, y) & ReachGrid::kShadow) == 0) {
+    return shade;
+  }
   for (const PlacedObject& object : objects) {
     const Eigen::Vector2f d(x - object.shadow_center.x(), y - object.shadow_center.y());
     if (d.squaredNorm() > object.shadow_reach2) {
@@ -111,6 +115,9 @@ float Moment::floorShade(float x, float y) const {
 
 Eigen::Vector3f Moment::beamLux(const Eigen::Vector3f& p, const Eigen::Vector3f& n) const {
   float lux = 0.0F;
+  if ((reach_grid.at(p.x(), p.y()) & ReachGrid::kBeam) == 0) {
+    return Eigen::Vector3f::Zero();
+  }
   for (const Beam& beam : beams) {
     const Eigen::Vector3f d = p - beam.position;
     const float ahead = d.dot(beam.direction);
@@ -196,6 +203,41 @@ void MomentMaker::place(Moment& moment, int mesh, const SE3& T_world_object, std
   moment.objects.push_back(std::move(object));
 }
 
+void MomentMaker::markReach(Moment& moment) const {
+  const FloorGrid& floor = light_.floor_grid;
+  ReachGrid& grid = moment.reach_grid;
+  grid.min = floor.min;
+  grid.nx = static_cast<int>(static_cast<float>(floor.nx) * floor.cell / ReachGrid::kCell) + 1;
+  grid.ny = static_cast<int>(static_cast<float>(floor.ny) * floor.cell / ReachGrid::kCell) + 1;
+  grid.cells.assign(static_cast<std::size_t>(grid.nx) * grid.ny, 0);
+  constexpr float kRadius = 0.75F * ReachGrid::kCell;  // of a circle around a cell
+  for (int y = 0; y < grid.ny; ++y) {
+    for (int x = 0; x < grid.nx; ++x) {
+      std::uint8_t& cell = grid.cells[static_cast<std::size_t>(y) * grid.nx + x];
+      const Eigen::Vector2f center =
+          grid.min + ReachGrid::kCell * Eigen::Vector2f(x + 0.5F, y + 0.5F);
+      for (const Beam& beam : moment.beams) {
+        const Eigen::Vector2f d = center - beam.position.head<2>();
+        const float distance = d.norm();
+        if (distance > kBeamReach + kRadius) {
+          continue;
+        }
+        const float wide = kBeamWedge + std::asin(std::min(1.0F, kRadius / distance));
+        if (distance < 2.0F * kRadius ||
+            d.dot(beam.direction.head<2>().normalized()) > distance * std::cos(wide)) {
+          cell |= ReachGrid::kBeam;
+        }
+      }
+      for (const PlacedObject& object : moment.objects) {
+        const float far = std::sqrt(object.shadow_reach2) + kRadius;
+        if ((center - object.shadow_center).squaredNorm() <= far * far) {
+          cell |= ReachGrid::kShadow;
+        }
+      }
+    }
+  }
+}
+
 std::shared_ptr<const Moment> MomentMaker::make(double t,
                                                 const std::optional<SE3>& T_world_vehicle) const {
   auto moment = std::make_shared<Moment>();
@@ -231,6 +273,7 @@ std::shared_ptr<const Moment> MomentMaker::make(double t,
     }
     rtcCommitScene(moment->scene.get());
   }
+  markReach(*moment);
   for (const Luminaire& lamp : scene_.luminaires) {
     if (lamp.flicker_depth > 0.0F && moment->lamp_brightness.empty()) {
       moment->lamp_brightness.assign(scene_.luminaires.size(), 1.0F);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -54,6 +55,26 @@ struct Beam {
   Eigen::Vector3f direction = Eigen::Vector3f::UnitX();
 };
 
+/// Where on the plan head lamps and shadows of objects may reach at all.
+struct ReachGrid {
+  static constexpr float kCell = 1.0F;  ///< m
+  static constexpr std::uint8_t kBeam = 1;
+  static constexpr std::uint8_t kShadow = 2;
+  Eigen::Vector2f min = Eigen::Vector2f::Zero();
+  int nx = 0;
+  int ny = 0;
+  std::vector<std::uint8_t> cells;  ///< kBeam | kShadow
+  /// What may reach a place; outside the grid everything may.
+  [[nodiscard]] std::uint8_t at(float x, float y) const {
+    const float fx = (x - min.x()) * (1.0F / kCell);
+    const float fy = (y - min.y()) * (1.0F / kCell);
+    const bool inside =
+        fx >= 0.0F && fy >= 0.0F && fx < static_cast<float>(nx) && fy < static_cast<float>(ny);
+    return inside ? cells[static_cast<std::size_t>(fy) * nx + static_cast<std::size_t>(fx)]
+                  : kBeam | kShadow;
+  }
+};
+
 /// All that moves, at one time: shared by the cameras of a frame set.
 struct Moment {
   double t = 0.0;  ///< s
@@ -61,6 +82,7 @@ struct Moment {
   EmbreeScene scene;                   ///< instance id: index into objects; null without objects
   std::vector<float> lamp_brightness;  ///< per luminaire, 1 where steady; empty: all steady
   std::vector<Beam> beams;
+  ReachGrid reach_grid;
 
   /// Whether anything that moves may show in a cone; its half angle in radians.
   [[nodiscard]] bool showsIn(const Eigen::Vector3f& eye, const Eigen::Vector3f& axis,
@@ -81,6 +103,7 @@ class MomentMaker {
 
  private:
   [[nodiscard]] std::shared_ptr<const ObjectMesh> shapeOf(int mesh) const;
+  void markReach(Moment& moment) const;
   void place(Moment& moment, int mesh, const SE3& T_world_object, std::uint32_t instance,
              SemanticClass label) const;
 

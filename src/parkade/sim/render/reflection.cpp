@@ -22,7 +22,7 @@ constexpr float kMirrorSpread = 0.01F;  // rad: mirror images of textures are a 
 constexpr int kPattern = 4;  // pixels a side
 
 constexpr int raysOf(MirrorDensity density) {
-  return density == MirrorDensity::kHalf ? 8 : 4;
+  return density == MirrorDensity::kHalf ? 8 : density == MirrorDensity::kQuarter ? 4 : 2;
 }
 
 /// Slopes (microfacet normal against the mean normal) for the places of the pattern: GGX with unit
@@ -40,9 +40,10 @@ std::array<Eigen::Vector2f, 8> makeLobe(MirrorDensity density) {
 }
 
 const Eigen::Vector2f& lobeSlope(MirrorDensity density, int place) {
-  static const std::array<Eigen::Vector2f, 8> kHalf = makeLobe(MirrorDensity::kHalf);
-  static const std::array<Eigen::Vector2f, 8> kQuarter = makeLobe(MirrorDensity::kQuarter);
-  return (density == MirrorDensity::kHalf ? kHalf : kQuarter)[static_cast<std::size_t>(place)];
+  static const std::array<std::array<Eigen::Vector2f, 8>, 3> kLobes{
+      makeLobe(MirrorDensity::kHalf), makeLobe(MirrorDensity::kQuarter),
+      makeLobe(MirrorDensity::kEighth)};
+  return kLobes[static_cast<std::size_t>(density)][static_cast<std::size_t>(place)];
 }
 
 /// Weights of two 4-pixel means, one after the other.
@@ -65,9 +66,8 @@ int mirrorPlace(MirrorDensity density, int x, int y) {
   return place < raysOf(density) ? place : -1;
 }
 
-MirrorRay makeMirrorRay(const LampMap& lamps, const Surface& surface,
-                        const Eigen::Vector3f& direction, float weight, MirrorDensity density,
-                        int place) {
+MirrorRay makeMirrorRay(const Surface& surface, const Eigen::Vector3f& direction, float weight,
+                        MirrorDensity density, int place) {
   MirrorRay ray;
   ray.place = static_cast<std::uint8_t>(place);
   ray.weight = weight;
@@ -75,8 +75,9 @@ MirrorRay makeMirrorRay(const LampMap& lamps, const Surface& surface,
   Eigen::Vector3f n = surface.normal;
   if (surface.is_floor) {
     const float cosine = -direction.dot(n);
-    ray.lamp_glow =
-        lamps.glow(surface.position, direction + 2.0F * cosine * n, cosine, surface.roughness);
+    ray.lobe_direction = direction + 2.0F * cosine * n;
+    ray.lobe_cosine = cosine;
+    ray.lobe_roughness = surface.roughness;
     const float alpha = surface.roughness * surface.roughness;
     const Eigen::Vector2f& slope = lobeSlope(density, place);
     n.x() += alpha * slope.x();
@@ -90,9 +91,9 @@ MirrorRay makeMirrorRay(const LampMap& lamps, const Surface& surface,
     ray.direction.normalize();
   }
   if (!surface.is_floor) {
-    ray.lamp_glow =
-        lamps.glow(surface.position, ray.direction, std::max(ray.direction.z(), kSteepest),
-                   std::max(surface.roughness, kCoatBlur));
+    ray.lobe_direction = ray.direction;
+    ray.lobe_cosine = std::max(ray.direction.z(), kSteepest);
+    ray.lobe_roughness = std::max(surface.roughness, kCoatBlur);
   }
   ray.origin = surface.position + 0.002F * surface.normal;
   return ray;
@@ -112,20 +113,30 @@ void tracePacket(const FrameSetup& setup, RTCScene moving, float near_limit, con
     packet.rays.ray.tnear[k] = near_limit;
   }
   traceBoth(*setup.tracer, moving, packet, true);
+  std::array<SurfaceHit, kPacket> hits;
+  for (int k = 0; k < lanes; ++k) {
+    SurfaceHit& hit = hits[static_cast<std::size_t>(k)];
+    hit = hitOf(*setup.tracer, packet, k);
+    setup.shader->prefetchTriangle(hit);
+  }
+  for (const SurfaceHit& hit : hits) {
+    setup.shader->prefetchVertices(hit);
+  }
   const float lamps_height = setup.shader->lamps().height() - kLampRoom;
   for (int k = 0; k < lanes; ++k) {
     const MirrorRay& ray = rays[k];
-    const SurfaceHit hit = hitOf(*setup.tracer, packet, k);
+    const SurfaceHit& hit = hits[static_cast<std::size_t>(k)];
     if (hit.triangle == kNoTriangle) {
       use(ray, setup.shader->missed(ray.origin, ray.direction));
       continue;
     }
-    const SurfaceHit* hits = &hit;
+    const SurfaceHit* one = &hit;
     const Eigen::Vector3f* direction = &ray.direction;
     Surface surface;
-    setup.shader->shade(&hits, &direction, 1, ray.origin, kMirrorSpread, 1, *setup.moment, surface);
+    setup.shader->shade(&one, &direction, 1, ray.origin, kMirrorSpread, 1, *setup.moment, surface);
     if (hit.t * ray.direction.z() > lamps_height - ray.origin.z()) {
-      surface.radiance += ray.lamp_glow;
+      surface.radiance += setup.shader->lamps().glow(ray.origin, ray.lobe_direction,
+                                                     ray.lobe_cosine, ray.lobe_roughness);
     }
     use(ray, surface.radiance);
   }

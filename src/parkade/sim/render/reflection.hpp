@@ -17,8 +17,11 @@ struct MirrorRay {
   float weight = 0.0F;  ///< reflectance times the share of the pixel; 0: no ray
   std::uint32_t pixel = 0;
   bool from_floor = false;
-  std::uint8_t place = 0;                               ///< in the floor's pattern
-  Eigen::Vector3f lamp_glow = Eigen::Vector3f::Zero();  ///< lamps in the lobe, if in sight
+  std::uint8_t place = 0;  ///< in the floor's pattern
+  // The lobe in which lamps show, if they are in sight: see LampMap::glow.
+  Eigen::Vector3f lobe_direction = Eigen::Vector3f::UnitZ();
+  float lobe_cosine = 1.0F;
+  float lobe_roughness = 1.0F;
 };
 
 /// What the floor mirrors, before it is averaged over neighbouring pixels.
@@ -35,6 +38,7 @@ struct ReflectionBuffer {
 enum class MirrorDensity : std::uint8_t {
   kHalf,     ///< 8, like the black fields of a chess board
   kQuarter,  ///< 4, every second of every second row
+  kEighth,   ///< 2, on a diagonal
 };
 
 /// The place of a pixel in the order of those that send a floor mirror ray, or -1.
@@ -43,9 +47,8 @@ int mirrorPlace(MirrorDensity density, int x, int y);
 /// The mirror ray of a surface. On floors its direction is spread over the glossy lobe by the place
 /// in a pattern that repeats every 4 x 4 pixels: the mean over any such block is an integral over
 /// the lobe.
-MirrorRay makeMirrorRay(const LampMap& lamps, const Surface& surface,
-                        const Eigen::Vector3f& direction, float weight, MirrorDensity density,
-                        int place);
+MirrorRay makeMirrorRay(const Surface& surface, const Eigen::Vector3f& direction, float weight,
+                        MirrorDensity density, int place);
 
 /// Traces mirror rays of floors into the buffer. moving is what they may meet of the moving
 /// objects, or null. Rays of one place of the pattern run alike and should follow each other.

@@ -17,7 +17,8 @@ namespace {
 
 TEST(MirrorPlace, SpreadsOverThePixelsEvenly) {
   for (const auto& [density, rays] :
-       {std::pair{MirrorDensity::kHalf, 8}, std::pair{MirrorDensity::kQuarter, 4}}) {
+       {std::pair{MirrorDensity::kHalf, 8}, std::pair{MirrorDensity::kQuarter, 4},
+        std::pair{MirrorDensity::kEighth, 2}}) {
     std::set<int> places;
     for (int y = 0; y < 4; ++y) {
       for (int x = 0; x < 4; ++x) {

@@ -72,6 +72,21 @@ class Shader {
     return meshOf(hit, moment).triangles[hit.triangle];
   }
 
+  /// Fetches what shade() will read of a hit: the triangle, and once that is there, its corners.
+  /// Hits of a tile shaded much later wait less for memory.
+  void prefetchTriangle(const SurfaceHit& hit) const {
+    if (hit.object < 0 && hit.triangle != kNoTriangle) {
+      __builtin_prefetch(&mesh_.triangles[hit.triangle]);
+    }
+  }
+  void prefetchVertices(const SurfaceHit& hit) const {
+    if (hit.object < 0 && hit.triangle != kNoTriangle) {
+      for (const std::uint32_t v : mesh_.triangles[hit.triangle].v) {
+        __builtin_prefetch(&vertices_[v]);
+      }
+    }
+  }
+
   /// Shades samples of one pixel that hit one surface (same material and object, like normals) as
   /// one: light at the first hit, colour as the mean over all. spread is the angle between
   /// neighbouring samples, samples how many the pixel has.
