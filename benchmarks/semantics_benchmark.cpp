@@ -10,8 +10,10 @@
 #include <string>
 
 #include "parkade/semantics/agent_tracker.hpp"
+#include "parkade/semantics/line_extraction.hpp"
 #include "parkade/semantics/object_extraction.hpp"
 #include "parkade/semantics/segmentation.hpp"
+#include "parkade/semantics/slot_extraction.hpp"
 
 namespace parkade {
 namespace {
@@ -109,6 +111,45 @@ void extractObjects(benchmark::State& state) {
   state.counters["found"] = static_cast<double>(found);
 }
 BENCHMARK(extractObjects)->Unit(benchmark::kMillisecond);
+
+// Rows of slots on both sides of an aisle, and cars in some of them.
+void paintRows(BevImage& bev, BevLabels& labels) {
+  const BevGeometry& g = bev.geometry;
+  bev.image = cv::Mat(g.height_px, g.width_px, CV_8UC3, cv::Scalar::all(90.0));
+  labels.geometry = g;
+  labels.labels = cv::Mat(g.height_px, g.width_px, CV_8UC1, cv::Scalar(1.0));
+  labels.confidence = cv::Mat(g.height_px, g.width_px, CV_8UC1, cv::Scalar(255.0));
+  const auto paint = [&](const cv::Rect& where, SemanticClass c, double grey) {
+    const cv::Rect inside = where & cv::Rect(0, 0, g.width_px, g.height_px);
+    bev.image(inside).setTo(cv::Scalar::all(grey));
+    labels.labels(inside).setTo(static_cast<double>(c));
+  };
+  constexpr int kPitch = 62;
+  constexpr int kLine = 3;
+  for (const int side : {0, 254}) {
+    for (int v = 8; v < g.height_px; v += kPitch) {
+      paint({side, v, 130, kLine}, SemanticClass::kSlotLine, 190.0);
+      if (v % 4 == 0) paint({side + 20, v + 9, 90, 42}, SemanticClass::kVehicle, 40.0);
+    }
+    paint({side == 0 ? 127 : side, 8, kLine, 6 * kPitch}, SemanticClass::kSlotLine, 190.0);
+  }
+}
+
+void findLinesAndSlots(benchmark::State& state) {
+  cv::setNumThreads(1);
+  BevImage bev;
+  BevLabels labels;
+  paintRows(bev, labels);
+  const BevViews views = BevViews::fromMiddle(bev.geometry);
+  std::size_t slots = 0;
+  for (auto _ : state) {
+    const Lines lines = extractLines(bev, labels, 0.002);
+    slots = extractSlots(bev, labels, lines.segments, views, {0.002, 0.005}).size();
+    benchmark::DoNotOptimize(slots);
+  }
+  state.counters["slots"] = static_cast<double>(slots);
+}
+BENCHMARK(findLinesAndSlots)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace parkade

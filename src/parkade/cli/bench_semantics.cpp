@@ -136,6 +136,12 @@ Result<std::vector<std::unique_ptr<SampleScore>>> makeScores(const BenchArgument
                        arguments.options.attitude_error_deg * M_PI / 180.0});
   if (!objects) return objects.error();
   scores.push_back(std::move(objects).value());
+  Result<std::unique_ptr<SampleScore>> slots =
+      makeSlotScore({arguments.segmentation.bev_network, true_labels, pictures,
+                     arguments.options.attitude_error_deg * M_PI / 180.0,
+                     0.01 * arguments.options.height_error_cm});
+  if (!slots) return slots.error();
+  scores.push_back(std::move(slots).value());
   return scores;
 }
 

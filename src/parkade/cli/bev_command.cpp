@@ -14,8 +14,11 @@
 #include "parkade/pipeline/stitched_views.hpp"
 #include "parkade/semantics/draw_labels.hpp"
 #include "parkade/semantics/draw_objects.hpp"
+#include "parkade/semantics/draw_slots.hpp"
+#include "parkade/semantics/line_extraction.hpp"
 #include "parkade/semantics/object_extraction.hpp"
 #include "parkade/semantics/segmentation.hpp"
+#include "parkade/semantics/slot_extraction.hpp"
 #include "parkade/tracking/overlap.hpp"
 
 namespace parkade::cli {
@@ -67,9 +70,10 @@ class BevWriter {
     return writer;
   }
 
-  /// The stitcher with its masks, whose pictures these are: objects are drawn too.
+  /// The stitcher with its masks, whose pictures these are: objects and slots are drawn too.
   void setViews(const BevStitcher& stitcher, const Rig& rig) {
-    objects_ = std::make_shared<ObjectExtractor>(stitcher.geometry(), viewsOf(stitcher, rig));
+    views_ = viewsOf(stitcher, rig);
+    objects_ = std::make_shared<ObjectExtractor>(stitcher.geometry(), views_);
   }
 
   Status write(const BevImage& bev) const {
@@ -82,6 +86,10 @@ class BevWriter {
         const FoundObjects found = objects_->extract(*labels, kAttitudeSigma);
         picture = drawObjects(picture, bev.geometry, found.objects, untracked(found.agents),
                               bev.geometry.width_px < kSmall ? 2.0 : 1.0);
+        const Lines lines = extractLines(bev, *labels, kAttitudeSigma);
+        const std::vector<SlotObservation> slots =
+            extractSlots(bev, *labels, lines.segments, views_, {kAttitudeSigma, kHeightSigma});
+        picture = drawSlots(picture, bev.geometry, slots, lines.segments);
       }
     }
     return writeImage((std::filesystem::path(folder_) / fmt::format("{}.png", bev.t_ns)).string(),
@@ -91,10 +99,12 @@ class BevWriter {
  private:
   static constexpr double kShare = 0.35;  // of the classes' colours
   static constexpr double kAttitudeSigma =
-      0.0087;                         // rad: the body's attitude is not estimated here
-  static constexpr int kSmall = 600;  // px: smaller pictures are enlarged for texts
+      0.0087;                                   // rad: the body's attitude is not estimated here
+  static constexpr double kHeightSigma = 0.02;  // m
+  static constexpr int kSmall = 600;            // px: smaller pictures are enlarged for texts
   std::string folder_;
   std::shared_ptr<SegmentationNetwork> network_;
+  BevViews views_;
   std::shared_ptr<ObjectExtractor> objects_;
 };
 

@@ -45,4 +45,15 @@ struct ObjectScoreOptions {
 /// Precision, recall and errors of objects on the floor, pillars, vehicles and people.
 Result<std::unique_ptr<SampleScore>> makeObjectScore(const ObjectScoreOptions& options);
 
+struct SlotScoreOptions {
+  std::string bev_network;         ///< class map; empty: Parkade's own
+  bool true_labels = false;        ///< features from the true labels instead of the network's
+  std::string pictures;            ///< folder for pictures with found and true slots; empty: none
+  double attitude_sigma = 0.0035;  ///< rad, of the attitude that pictures are stitched with
+  double height_sigma = 0.005;     ///< m, of the height
+};
+
+/// Precision, recall, entrance corners and availability of parking slots.
+Result<std::unique_ptr<SampleScore>> makeSlotScore(const SlotScoreOptions& options);
+
 }  // namespace parkade::cli

@@ -1,0 +1,339 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "parkade/cli/sample_score.hpp"
+#include "parkade/geometry/so3.hpp"
+#include "parkade/io/file.hpp"
+#include "parkade/io/image_file.hpp"
+#include "parkade/pipeline/stitched_views.hpp"
+#include "parkade/semantics/draw_labels.hpp"
+#include "parkade/semantics/draw_slots.hpp"
+#include "parkade/semantics/label_probe.hpp"
+#include "parkade/semantics/line_extraction.hpp"
+#include "parkade/semantics/segmentation.hpp"
+#include "parkade/semantics/slot_extraction.hpp"
+
+namespace parkade::cli {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kReach = 8.0;  // m from the picture's middle
+constexpr double kMatch = 0.5;  // m: entrance corners nearer than this are the same
+constexpr std::array<double, 5> kBins = {0.0, 3.0, 5.0, 6.5, 8.0};
+
+struct TrueSlot {
+  SlotObservation slot;
+  bool occupied = false;
+  bool counts = false;  // in the picture, its entrance in sight, its lines not worn away
+};
+
+class SlotScore : public SampleScore {
+ public:
+  SlotScore(SlotScoreOptions options, std::optional<SegmentationNetwork> network)
+      : options_(std::move(options)), network_(std::move(network)) {}
+
+  Status begin(const SemanticSampler& sampler) override {
+    garage_ = sampler.simulation().spec().garage_seed;
+    views_ = viewsOf(sampler.stitcher(), sampler.simulation().toldRig());
+    return {};
+  }
+
+  Status add(const SemanticSampler& sampler, const SemanticSample& sample) override {
+    BevLabels truth;
+    truth.geometry = sample.bev.geometry;
+    truth.labels = sample.bev_labels;
+    truth.confidence = cv::Mat(truth.labels.size(), CV_8UC1, cv::Scalar(255));
+    BevLabels labels = truth;
+    if (network_) {
+      Result<BevLabels> found = network_->segment(sample.bev);
+      if (!found) return found.error();
+      labels = std::move(found).value();
+    }
+    const Lines lines = extractLines(sample.bev, labels, options_.attitude_sigma);
+    const std::vector<SlotObservation> found =
+        extractSlots(sample.bev, labels, lines.segments, views_,
+                     {options_.attitude_sigma, options_.height_sigma});
+    const std::vector<TrueSlot> slots = trueSlots(sampler, sample, truth);
+    compare(sample.bev.geometry, found, slots);
+    if (options_.pictures.empty()) return {};
+    return draw(sample, labels, lines, found, slots);
+  }
+
+  [[nodiscard]] std::string table() const override;
+  void writeTo(nlohmann::json& metrics) const override;
+
+ private:
+  struct Bin {
+    std::vector<double> errors;  // m, of entrance corners
+    double chi2 = 0.0;           // sum over corners
+  };
+  struct Count {
+    int visible = 0;
+    int found = 0;
+  };
+
+  [[nodiscard]] std::vector<TrueSlot> trueSlots(const SemanticSampler& sampler,
+                                                const SemanticSample& sample,
+                                                const BevLabels& truth) const;
+  void compare(const BevGeometry& geometry, const std::vector<SlotObservation>& found,
+               const std::vector<TrueSlot>& slots);
+
+  void measure(const BevGeometry& geometry, const SlotObservation& found, const TrueSlot& truth);
+  Status draw(const SemanticSample& sample, const BevLabels& labels, const Lines& lines,
+              const std::vector<SlotObservation>& found, const std::vector<TrueSlot>& slots) const;
+  [[nodiscard]] double recall() const {
+    return visible_ > 0 ? static_cast<double>(found_visible_) / visible_ : 0.0;
+  }
+  [[nodiscard]] double precision() const {
+    return told_ > 0 ? static_cast<double>(right_) / told_ : 0.0;
+  }
+  [[nodiscard]] double decidedRight() const {
+    return decided_ > 0 ? static_cast<double>(decided_right_) / decided_ : 0.0;
+  }
+  [[nodiscard]] std::vector<double> nearErrors() const {
+    std::vector<double> errors = bins_[0].errors;
+    errors.insert(errors.end(), bins_[1].errors.begin(), bins_[1].errors.end());
+    return errors;
+  }
+
+  SlotScoreOptions options_;
+  std::optional<SegmentationNetwork> network_;
+  BevViews views_;
+  int garage_ = 0;
+  int visible_ = 0;
+  int found_visible_ = 0;
+  int told_ = 0;
+  int right_ = 0;
+  int matched_ = 0;
+  int decided_ = 0;
+  int decided_right_ = 0;
+  std::array<Bin, kBins.size() - 1> bins_;
+  std::array<Count, 3> shapes_;
+  std::array<Count, 4> markings_;
+};
+
+double quantile(std::vector<double> values, double q) {
+  if (values.empty()) return 0.0;
+  const auto at = static_cast<std::size_t>(q * static_cast<double>(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
+  return values[at];
+}
+
+std::vector<TrueSlot> SlotScore::trueSlots(const SemanticSampler& sampler,
+                                           const SemanticSample& sample,
+                                           const BevLabels& truth) const {
+  const sim::Garage& garage = sampler.simulation().garage();
+  const GroundAttitude& a = sample.true_attitude;
+  const SO3 tilt = SO3::exp({0.0, a.pitch, 0.0}) * SO3::exp({a.roll, 0.0, 0.0});
+  const SE3 T_vehicle_world = sample.T_world_vehicle.inverse();
+  const BevGeometry& g = truth.geometry;
+  const LabelProbe probe(truth);
+  std::vector<TrueSlot> slots;
+  for (const sim::Slot& s : garage.slots) {
+    TrueSlot one;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Vector2d& c = s.corners[i];
+      const Eigen::Vector3d p_vehicle =
+          T_vehicle_world * Eigen::Vector3d(c.x(), c.y(), garage.floorHeight(c));
+      one.slot.corners[i] = (tilt * p_vehicle).head<2>();
+    }
+    const auto& c = one.slot.corners;
+    if ((0.5 * (c[0] + c[1]) - g.center).norm() > 1.5 * kReach) continue;
+    one.slot.shape = static_cast<SlotShape>(s.type);
+    one.slot.marking = static_cast<SlotMarking>(s.marking);
+    one.occupied = s.occupied;
+    constexpr double kSide = 0.7;  // m of each side line that must be in sight
+    constexpr double kHidden = 0.1;
+    const auto clear = [&](const Vector2d& from, const Vector2d& to) {
+      return probe.along(from, to).hidden <= kHidden;
+    };
+    const Vector2d left = kSide * (c[3] - c[0]).normalized();
+    const Vector2d right = kSide * (c[2] - c[1]).normalized();
+    const auto worn = [&](const Vector2d& from, const Vector2d& to) {
+      return probe.along(from, to, 0.05).paint < 0.5;
+    };
+    one.counts = (c[0] - g.center).norm() < kReach && (c[1] - g.center).norm() < kReach &&
+                 clear(c[0], c[1]) && clear(c[0], c[0] + left) && clear(c[1], c[1] + right) &&
+                 // What lies in front of the corner tells that the line ends there.
+                 clear(c[0], c[0] - 0.3 * left) && clear(c[1], c[1] - 0.3 * right) &&
+                 !worn(c[0], c[0] + left) && !worn(c[1], c[1] + right);
+    slots.push_back(one);
+  }
+  return slots;
+}
+
+void SlotScore::measure(const BevGeometry& geometry, const SlotObservation& found,
+                        const TrueSlot& truth) {
+  for (int k = 0; k < 2; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const Vector2d error = found.corners[i] - truth.slot.corners[i];
+    const double distance = (truth.slot.corners[i] - geometry.center).norm();
+    for (std::size_t b = 0; b + 1 < kBins.size(); ++b) {
+      if (distance < kBins[b] || distance >= kBins[b + 1]) continue;
+      bins_[b].errors.push_back(error.norm());
+      const Eigen::Matrix2d C = found.entrance_covariance.block<2, 2>(2 * k, 2 * k);
+      bins_[b].chi2 += error.dot(C.llt().solve(error));
+    }
+  }
+  ++matched_;
+  constexpr double kSure = 0.1;
+  if (std::abs(found.probability_free - 0.5) < kSure) return;
+  ++decided_;
+  if ((found.probability_free < 0.5) == truth.occupied) ++decided_right_;
+}
+
+void SlotScore::compare(const BevGeometry& geometry, const std::vector<SlotObservation>& found,
+                        const std::vector<TrueSlot>& slots) {
+  std::vector<bool> taken(slots.size(), false);
+  for (const SlotObservation& f : found) {
+    const auto distance = [&](const Vector2d& p) { return (p - geometry.center).norm(); };
+    if (std::max(distance(f.corners[0]), distance(f.corners[1])) > kReach) continue;
+    std::size_t best = slots.size();
+    double best_off = kMatch;
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+      const auto& c = slots[i].slot.corners;
+      const double off = std::max((f.corners[0] - c[0]).norm(), (f.corners[1] - c[1]).norm());
+      if (taken[i] || off >= best_off) continue;
+      best_off = off;
+      best = i;
+    }
+    ++told_;
+    if (best == slots.size()) continue;
+    taken[best] = true;
+    ++right_;
+    measure(geometry, f, slots[best]);
+  }
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (!slots[i].counts) continue;
+    Count& shape = shapes_[static_cast<std::size_t>(slots[i].slot.shape)];
+    Count& marking = markings_[static_cast<std::size_t>(slots[i].slot.marking)];
+    ++visible_;
+    ++shape.visible;
+    ++marking.visible;
+    if (!taken[i]) continue;
+    ++found_visible_;
+    ++shape.found;
+    ++marking.found;
+  }
+}
+
+Status SlotScore::draw(const SemanticSample& sample, const BevLabels& labels, const Lines& lines,
+                       const std::vector<SlotObservation>& found,
+                       const std::vector<TrueSlot>& slots) const {
+  std::vector<LineSegment> truth;
+  for (const TrueSlot& one : slots) {
+    if (!one.counts) continue;
+    for (std::size_t i = 0; i < 4; ++i) {
+      LineSegment side;
+      side.begin = one.slot.corners[i];
+      side.end = one.slot.corners[(i + 1) % 4];
+      truth.push_back(side);
+    }
+  }
+  const BevGeometry& g = sample.bev.geometry;
+  const cv::Mat plain = drawLabels(sample.bev.image, labels.labels, 0.0);
+  const cv::Mat parts[2] = {
+      drawSlots(plain, g, found, truth, 2.0),
+      drawSlots(drawLabels(sample.bev.image, labels.labels, 0.6), g, {}, lines.segments, 2.0)};
+  cv::Mat picture(parts[0].rows, 2 * parts[0].cols, CV_8UC3);
+  for (int k = 0; k < 2; ++k) {
+    parts[k].copyTo(picture.colRange(k * parts[0].cols, (k + 1) * parts[0].cols));
+  }
+  return writeImage(joinPath(options_.pictures,
+                             fmt::format("g{}_{:03d}_slots.png", garage_, sample.frames.index)),
+                    picture, {.png = true});
+}
+
+std::string SlotScore::table() const {
+  std::string text = fmt::format("Slots to {:.0f} m, from {} labels\n", kReach,
+                                 network_ ? "the network's" : "true");
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, "entrance in sight    {:>6}, found {:>6}: recall {:.4f}\n", visible_,
+                 found_visible_, recall());
+  fmt::format_to(out, "told                 {:>6}, right {:>6}: precision {:.4f}\n", told_, right_,
+                 precision());
+  fmt::format_to(out, "free or occupied     {:>6} told, right {:.4f}; not told {}\n", decided_,
+                 decidedRight(), matched_ - decided_);
+  constexpr std::array<const char*, 3> kShapes = {"perpendicular", "parallel", "slanted"};
+  constexpr std::array<const char*, 4> kMarkings = {"closed", "T", "L", "open"};
+  const auto counts = [&](const char* name, const Count& count) {
+    if (count.visible == 0) return;
+    fmt::format_to(out, "  {:<18} {:>6}, found {:>6}: recall {:.4f}\n", name, count.visible,
+                   count.found, static_cast<double>(count.found) / count.visible);
+  };
+  for (std::size_t i = 0; i < 3; ++i) counts(kShapes[i], shapes_[i]);
+  for (std::size_t i = 0; i < 4; ++i) counts(kMarkings[i], markings_[i]);
+  fmt::format_to(out, "{:<20} {:>8} {:>10} {:>8} {:>12}\n", "entrance corners", "count", "median m",
+                 "p95 m", "chi2 per 2");
+  const auto row = [&](const std::string& name, const std::vector<double>& errors, double chi2) {
+    if (errors.empty()) return;
+    fmt::format_to(out, "{:<20} {:>8} {:>10.4f} {:>8.4f} {:>12.3f}\n", name, errors.size(),
+                   quantile(errors, 0.5), quantile(errors, 0.95),
+                   chi2 / (2.0 * static_cast<double>(errors.size())));
+  };
+  for (std::size_t b = 0; b + 1 < kBins.size(); ++b) {
+    row(fmt::format("  {:.1f} to {:.1f} m", kBins[b], kBins[b + 1]), bins_[b].errors,
+        bins_[b].chi2);
+  }
+  row("  to 5 m", nearErrors(), bins_[0].chi2 + bins_[1].chi2);
+  return text;
+}
+
+void SlotScore::writeTo(nlohmann::json& metrics) const {
+  nlohmann::json& slots = metrics["slots"];
+  slots["visible"] = visible_;
+  slots["told"] = told_;
+  slots["recall"] = recall();
+  slots["precision"] = precision();
+  slots["availability_right"] = decidedRight();
+  slots["availability_told"] = matched_ > 0 ? static_cast<double>(decided_) / matched_ : 0.0;
+  const std::vector<double> near = nearErrors();
+  slots["corner_median_to_5m"] = quantile(near, 0.5);
+  slots["corner_p95_to_5m"] = quantile(near, 0.95);
+  for (std::size_t b = 0; b + 1 < kBins.size(); ++b) {
+    const std::vector<double>& errors = bins_[b].errors;
+    if (errors.empty()) continue;
+    slots["corners"].push_back(
+        {{"from", kBins[b]},
+         {"to", kBins[b + 1]},
+         {"count", errors.size()},
+         {"median", quantile(errors, 0.5)},
+         {"p95", quantile(errors, 0.95)},
+         {"chi2_per_dof", bins_[b].chi2 / (2.0 * static_cast<double>(errors.size()))}});
+  }
+}
+
+}  // namespace
+
+Result<std::unique_ptr<SampleScore>> makeSlotScore(const SlotScoreOptions& options) {
+  std::optional<SegmentationNetwork> network;
+  if (!options.true_labels) {
+    std::string path = options.bev_network;
+    if (path.empty()) {
+      const Result<std::string> own = findModel("bev_segmentation");
+      if (!own) return own.error();
+      path = *own;
+    }
+    Result<SegmentationNetwork> loaded = SegmentationNetwork::load(path);
+    if (!loaded) return loaded.error();
+    network = std::move(loaded).value();
+  }
+  if (!options.pictures.empty()) {
+    const Status status = makeFolders(options.pictures);
+    if (!status) return status.error();
+  }
+  return std::unique_ptr<SampleScore>(new SlotScore(options, std::move(network)));
+}
+
+}  // namespace parkade::cli

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "parkade/semantics/label_probe.hpp"
+#include "parkade/types/bev_image.hpp"
+#include "parkade/types/semantic_features.hpp"
+
+namespace parkade {
+
+/// A place where a slot may have an entrance corner: the end of a painted line, or where another
+/// one meets it. Level frame.
+struct SlotMark {
+  Eigen::Vector2d p = Eigen::Vector2d::Zero();        ///< on the middle of the lines
+  Eigen::Vector2d inward = Eigen::Vector2d::UnitX();  ///< unit, along the side line
+  Eigen::Vector2d across = Eigen::Vector2d::Zero();   ///< unit, along the line that meets; or zero
+  int side = 0;                                       ///< index of the side line
+  double visible = 0.0;                               ///< m of the side line, from the mark on
+  double width = 0.0;                                 ///< m, of the side line
+  double sigma_along = 0.0;                           ///< m, along inward, of the picture alone
+  double sigma_aside = 0.0;                           ///< m, across inward, of the picture alone
+};
+
+/// Marks of all slot lines among the segments, both ways along each. The side line must end at its
+/// mark: what goes on beyond (0.9 m) is no side of an entrance. Where a line's end is hidden, or
+/// another line meets it, there is no open end. grey: CV_8UC1, the picture that the labels are of;
+/// its edge places open ends to a fraction of a pixel.
+std::vector<SlotMark> findSlotMarks(const cv::Mat& grey, const LabelProbe& probe,
+                                    const std::vector<LineSegment>& segments);
+
+}  // namespace parkade
