@@ -29,6 +29,7 @@ struct SemanticFrontEnd::Impl {
   BevStitcher stitcher;
   SegmentationNetwork network;
   GroundPlaneEstimator ground;
+  BevViews bev_views;
   std::unique_ptr<ObjectExtractor> objects;  // made when the masks are known
   AgentTracker tracker;
   // Taken by addOdometry(), used by look(), which may work in another thread meanwhile.
@@ -63,8 +64,9 @@ Result<std::unique_ptr<SemanticFrontEnd>> SemanticFrontEnd::create(
   for (std::size_t c = 0; c < masks->size(); ++c) {
     if (!(*masks)[c].empty()) impl->stitcher.setMask(static_cast<int>(c), (*masks)[c]);
   }
-  impl->objects = std::make_unique<ObjectExtractor>(impl->stitcher.geometry(),
-                                                    viewsOf(impl->stitcher, rig), options.objects);
+  impl->bev_views = viewsOf(impl->stitcher, rig);
+  impl->objects = std::make_unique<ObjectExtractor>(impl->stitcher.geometry(), impl->bev_views,
+                                                    options.objects);
   return std::unique_ptr<SemanticFrontEnd>(new SemanticFrontEnd(std::move(impl)));
 }
 
@@ -115,6 +117,10 @@ Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames) {
   frame.attitude_sigma = std::max(view.floor.sigma_pitch, view.floor.sigma_roll);
   frame.line_points = linePointsFromLabels(frame.labels, frame.attitude_sigma, m.options.lines);
   frame.line_segments = segmentsOf(frame.line_points);
+  // Slots need lines to a fraction of a pixel; registration has done better with the labels' own.
+  const Lines lines = extractLines(bev, frame.labels, frame.attitude_sigma, m.options.slot_lines);
+  frame.slots = extractSlots(bev, frame.labels, lines.segments, m.bev_views,
+                             {frame.attitude_sigma, view.floor.sigma_height}, m.options.slots);
   FoundObjects found = m.objects->extract(frame.labels, frame.attitude_sigma);
   frame.objects = std::move(found.objects);
   frame.moving = m.tracker.update(found.agents, SE2::fromSE3(view.now.T_odom_vehicle), frames.t_ns);

@@ -13,7 +13,9 @@
 #include "parkade/pipeline/stage_clock.hpp"
 #include "parkade/semantics/agent_tracker.hpp"
 #include "parkade/semantics/label_lines.hpp"
+#include "parkade/semantics/line_extraction.hpp"
 #include "parkade/semantics/object_extraction.hpp"
+#include "parkade/semantics/slot_extraction.hpp"
 #include "parkade/types/landmark.hpp"
 #include "parkade/types/pose_estimate.hpp"
 #include "parkade/types/semantic_features.hpp"
@@ -27,6 +29,8 @@ struct SemanticFrontEndOptions {
   BevOptions bev;
   GroundPlaneOptions ground;
   LabelLineOptions lines;
+  LineOptions slot_lines;
+  SlotOptions slots;
   ObjectOptions objects;
   AgentTrackerOptions agents;
 
@@ -39,6 +43,8 @@ struct SemanticFrontEndOptions {
     v.group("bev", bev);
     v.group("ground", ground);
     v.group("lines", lines);
+    v.group("slot_lines", slot_lines);
+    v.group("slots", slots);
     v.group("objects", objects);
     v.group("agents", agents);
   }
