@@ -1,8 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Parkade authors
 # SPDX-License-Identifier: Apache-2.0
 find_package(embree 3.13 REQUIRED GLOBAL)
-find_package(TBB REQUIRED GLOBAL)
-list(APPEND SIM_PRIVATE_DEPS embree TBB::tbb opencv_core)
+list(APPEND SIM_PRIVATE_DEPS embree opencv_core)
 set(RENDER_SOURCES
     render/bake_bounces.cpp
     render/bake_places.cpp
@@ -33,6 +32,7 @@ set_source_files_properties(${RENDER_SOURCES} PROPERTIES
 set(RENDER_TESTS
     render/garage_exactness_test.cpp
     render/geometry_exactness_test.cpp
+    render/parallel_test.cpp
     render/reflection_test.cpp
     render/renderer_test.cpp
     render/sensor_model_test.cpp)
