@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Parkade authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Preintegration of one frame interval, one solve of a full six-camera window (four steps at most),
+// Preintegration of one frame interval, one solve of a full six-camera window,
 // and one frame set through the estimator, on simulated tracks: six cameras, 120 tracks each.
 #include <benchmark/benchmark.h>
 
