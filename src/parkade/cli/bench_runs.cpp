@@ -16,6 +16,7 @@
 #include "parkade/eval/map_report.hpp"
 #include "parkade/eval/report.hpp"
 #include "parkade/io/file.hpp"
+#include "parkade/io/pose_covariance_io.hpp"
 #include "parkade/io/sequence_writer.hpp"
 #include "parkade/io/trajectory_io.hpp"
 
@@ -95,8 +96,15 @@ Result<Json> judgeTrajectory(const std::string& trajectory, const std::string& s
   if (!truth) return truth.error();
   EvaluationOptions options;
   options.align = "origin";
-  const Result<Evaluation> anchored = evaluate(estimate->poses, truth->poses, options);
+  Result<Evaluation> anchored = evaluate(estimate->poses, truth->poses, options);
   if (!anchored) return anchored.error();
+  const std::string told = joinPath(fs::path(trajectory).parent_path().string(), "covariance.csv");
+  if (fs::is_regular_file(told)) {
+    const Result<PoseCovariances> covariances = readPoseCovariances(told);
+    if (!covariances) return covariances.error();
+    const auto consistency = poseConsistency(estimate->poses, *covariances, truth->poses);
+    if (consistency) anchored->consistency = *consistency;
+  }
   options.align = "se3";
   const Result<Evaluation> aligned = evaluate(estimate->poses, truth->poses, options);
   if (!aligned) return aligned.error();

@@ -18,6 +18,7 @@
 #include "parkade/eval/plot.hpp"
 #include "parkade/eval/report.hpp"
 #include "parkade/io/file.hpp"
+#include "parkade/io/pose_covariance_io.hpp"
 #include "parkade/io/trajectory_io.hpp"
 
 namespace parkade::cli {
@@ -93,6 +94,19 @@ Result<TrajectoryFile> read(const Result<std::string>& path, const std::string& 
   return readReference(*path, options);
 }
 
+// Of a run's folder: is the covariance that it tells honest?
+Status judgeCovariances(const EvalArguments& arguments, const Trajectory& estimate,
+                        const Trajectory& reference, Evaluation& evaluation) {
+  const std::string path = joinPath(arguments.trajectory, "covariance.csv");
+  if (!fs::is_regular_file(path)) return {};
+  const auto covariances = readPoseCovariances(path);
+  if (!covariances) return covariances.error();
+  const auto consistency =
+      poseConsistency(estimate, *covariances, reference, arguments.options.association);
+  if (consistency) evaluation.consistency = *consistency;
+  return {};
+}
+
 Status checkClocks(const TrajectoryFile& estimate, const TrajectoryFile& reference,
                    const EvalArguments& arguments) {
   if (estimate.has_stamps != reference.has_stamps) {
@@ -120,6 +134,10 @@ Status evaluateFiles(const EvalArguments& arguments) {
   if (!evaluation) {
     return Error{fmt::format("{} against {}: {}", arguments.trajectory, arguments.reference,
                              evaluation.error().message)};
+  }
+  if (auto status = judgeCovariances(arguments, estimate->poses, reference->poses, *evaluation);
+      !status) {
+    return status;
   }
   EvaluationLabels labels{arguments.trajectory, arguments.reference, !estimate->has_stamps};
   if (labels.by_index && estimate->poses.size() != reference->poses.size()) {

@@ -15,6 +15,7 @@
 #include "parkade/core/log.hpp"
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
+#include "parkade/io/pose_covariance_io.hpp"
 #include "parkade/io/trajectory_io.hpp"
 #include "parkade/mapping/map_export.hpp"
 #include "parkade/mapping/map_file.hpp"
@@ -25,10 +26,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 11> kRunFiles = {
-    "map.db",      "trajectory.tum",      "trajectory_vio.tum",   "trajectory_final.tum",
-    "health.csv",  "timing.json",         "metrics.json",         "config.yaml",
-    "report.html", "pictures/tracks.jpg", "pictures/stitched.jpg"};
+constexpr std::array<const char*, 12> kRunFiles = {
+    "map.db",         "trajectory.tum", "trajectory_vio.tum",  "trajectory_final.tum",
+    "covariance.csv", "health.csv",     "timing.json",         "metrics.json",
+    "config.yaml",    "report.html",    "pictures/tracks.jpg", "pictures/stitched.jpg"};
 constexpr const char* kConfigHeading = "# Effective configuration of 'parkade run'";
 
 bool isRunFolder(const fs::path& folder) {
@@ -148,7 +149,9 @@ void HealthLog::onPose(const PoseEvent& event) {
       event.statistics.standstill ? 1 : 0);
   if (frames_[0] + frames_[1] + frames_[2] + frames_[3] == 0) first_t_ns_ = e.t_ns;
   ++frames_[static_cast<int>(e.health)];
-  if (e.health != Health::kInitialising && !first_pose_t_ns_) first_pose_t_ns_ = e.t_ns;
+  if (e.health == Health::kInitialising) return;
+  covariances_.push_back({e.t_ns, e.covariance.topLeftCorner<6, 6>()});
+  if (!first_pose_t_ns_) first_pose_t_ns_ = e.t_ns;
 }
 
 std::optional<double> HealthLog::startUpSeconds() const {
@@ -185,6 +188,8 @@ Status writeRunFiles(const std::string& folder, const RunDescription& descriptio
       writeTrajectory(path("trajectory.tum"), run.trajectory(), TrajectoryFormat::kTum);
   if (!written) return written;
   written = writeTrajectory(path("trajectory_vio.tum"), run.odometry(), TrajectoryFormat::kTum);
+  if (!written) return written;
+  written = writePoseCovariances(path("covariance.csv"), health.covariances());
   if (!written) return written;
   if (with_final) {
     Status status = writeTrajectory(path("trajectory_final.tum"), run.finalTrajectory(),

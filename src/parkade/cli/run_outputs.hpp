@@ -7,6 +7,7 @@
 
 #include "parkade/core/result.hpp"
 #include "parkade/pipeline/mapping_run.hpp"
+#include "parkade/types/pose_covariance.hpp"
 
 namespace parkade::cli {
 
@@ -14,18 +15,20 @@ namespace parkade::cli {
 /// files of an earlier run are removed first, so that none is taken for this one's.
 Status prepareRunFolder(const std::string& folder, bool force);
 
-/// Gathers one row of health.csv per frame set.
+/// Gathers one row of health.csv per frame set, and the covariances of the poses.
 class HealthLog : public PipelineObserver {
  public:
   HealthLog();
   void onPose(const PoseEvent& event) override;
   [[nodiscard]] const std::string& text() const { return text_; }
+  [[nodiscard]] const PoseCovariances& covariances() const { return covariances_; }
   [[nodiscard]] int frames(Health health) const { return frames_[static_cast<int>(health)]; }
   /// Seconds from the first frame set to the first pose; nothing where there is none.
   [[nodiscard]] std::optional<double> startUpSeconds() const;
 
  private:
   std::string text_;
+  PoseCovariances covariances_;
   int frames_[4] = {};
   TimeNs first_t_ns_ = 0;
   std::optional<TimeNs> first_pose_t_ns_;
@@ -55,8 +58,8 @@ struct RunDescription {
   int threads = 1;
 };
 
-/// Writes trajectory*.tum, health.csv, timing.json, metrics.json and config.yaml, each whole or not
-/// at all.
+/// Writes trajectory*.tum, covariance.csv, health.csv, timing.json, metrics.json and config.yaml,
+/// each whole or not at all.
 Status writeRunFiles(const std::string& folder, const RunDescription& description,
                      const MappingRun& run, const HealthLog& health, bool with_final);
 

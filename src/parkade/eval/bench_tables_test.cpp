@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace parkade {
 namespace {
 
@@ -72,6 +74,22 @@ TEST(BenchTables, SweepsAndGaragesHaveTablesOfTheirOwn) {
   EXPECT_THAT(tables[0].rows[0],
               ElementsAre("as it is", "fused", "1", "0", "0.200", "0.200", "0.200", "0.100", "-"));
   EXPECT_EQ(tables[1].rows[0][0], "10 lux");
+}
+
+TEST(BenchTables, HonestyStandsBesideItsBand) {
+  std::vector<BenchRecord> records;
+  for (int i = 1; i <= 5; ++i) {
+    records.push_back(record("test" + std::to_string(i), "fused", 0.01));
+    records.back().figures["nees.position"] = 1.0 * i;
+    records.back().figures["nees.yaw"] = 1.5;
+  }
+  const std::vector<TextTable> tables = detailTables(records, kMethods);
+  const auto found = std::find_if(tables.begin(), tables.end(), [](const TextTable& t) {
+    return t.title == "Honesty of the covariances";
+  });
+  ASSERT_NE(found, tables.end());
+  EXPECT_THAT(found->rows, ElementsAre(ElementsAre("fused", "5", "3.00", "1.25 to 5.50", "1.50",
+                                                   "0.17 to 2.57")));
 }
 
 TEST(BenchTables, TextsOfEveryLength) {

@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace parkade {
 namespace {
@@ -116,6 +117,41 @@ Result<NeesTest> neesTest(const std::vector<double>& nees_of_runs, int dof, doub
   test.lower = chiSquareQuantile(tail, n * dof) / n;
   test.upper = chiSquareQuantile(1.0 - tail, n * dof) / n;
   return test;
+}
+
+Result<PoseConsistency> poseConsistency(const Trajectory& estimate,
+                                        const PoseCovariances& covariances,
+                                        const Trajectory& reference,
+                                        AssociationOptions association) {
+  association.interpolate = true;
+  const Result<Association> pairs = associate(estimate, reference, association);
+  if (!pairs) return pairs.error();
+  std::map<TimeNs, const Matrix6d*> covariance_at;
+  const TimeNs offset = fromSeconds(association.offset_s);
+  for (const auto& row : covariances) covariance_at[row.t_ns + offset] = &row.covariance;
+
+  const SE3 T_reference_estimate =
+      pairs->reference.front().T_world_body * pairs->estimate.front().T_world_body.inverse();
+  PoseConsistency result;
+  for (std::size_t i = 1; i < pairs->size(); ++i) {
+    const auto found = covariance_at.find(pairs->estimate[i].t_ns);
+    if (found == covariance_at.end()) continue;
+    const SE3 T_estimate = T_reference_estimate * pairs->estimate[i].T_world_body;
+    const Vector6d error = poseError(T_estimate, pairs->reference[i].T_world_body);
+    const Eigen::Vector3d up =
+        T_estimate.rotation().inverse() * Eigen::Vector3d::UnitZ();  // picks the yaw
+    const double variance = up.dot(found->second->block<3, 3>(3, 3) * up);
+    const Result<double> position = nees(error.head<3>(), found->second->topLeftCorner<3, 3>());
+    if (!position || !(variance > 0.0)) continue;
+    const double yaw = up.dot(error.tail<3>());
+    result.position += *position;
+    result.yaw += yaw * yaw / variance;
+    ++result.poses;
+  }
+  if (result.poses == 0) return Error{"no pose has a covariance that can be judged"};
+  result.position /= static_cast<double>(result.poses);
+  result.yaw /= static_cast<double>(result.poses);
+  return result;
 }
 
 }  // namespace parkade

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "parkade/core/result.hpp"
+#include "parkade/eval/association.hpp"
 #include "parkade/geometry/se3.hpp"
+#include "parkade/types/pose_covariance.hpp"
 
 namespace parkade {
 
@@ -46,5 +48,19 @@ struct NeesTest {
 /// over a run varies less, so that the band is then on the safe side. Fails without a run.
 Result<NeesTest> neesTest(const std::vector<double>& nees_of_runs, int dof,
                           double probability = 0.95);
+
+/// NEES of a run's poses, the mean over time.
+struct PoseConsistency {
+  double position = 0.0;  ///< 3 if the covariance is right
+  double yaw = 0.0;       ///< about the reference's z; 1 if the covariance is right
+  std::size_t poses = 0;  ///< that count: matched, not the first, covariance positive definite
+};
+
+/// The first poses are joined, as the covariances are relative to it; the reference is
+/// interpolated. Fails where nothing matches or no pose counts.
+Result<PoseConsistency> poseConsistency(const Trajectory& estimate,
+                                        const PoseCovariances& covariances,
+                                        const Trajectory& reference,
+                                        AssociationOptions association = {});
 
 }  // namespace parkade

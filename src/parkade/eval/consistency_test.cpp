@@ -108,5 +108,37 @@ TEST(Nees, RefusesNoRun) {
   EXPECT_THROW(static_cast<void>(neesTest({1.0}, 0)), CheckError);
 }
 
+// A drive round a bend whose poses are off by draws of the covariances that it tells; odom differs
+// from the world, and its first pose is exact.
+TEST(PoseConsistency, TellsAnHonestCovarianceFromOneTooSmall) {
+  Random random(3);
+  const SE3 T_world_odom(SO3::exp({0.01, -0.02, 2.0}), {5.0, -3.0, 0.2});
+  const Vector6d sigma = (Vector6d() << 0.03, 0.02, 0.05, 0.002, 0.003, 0.01).finished();
+  Trajectory truth;
+  Trajectory estimate;
+  PoseCovariances honest;
+  PoseCovariances small;
+  for (int i = 0; i < 3000; ++i) {
+    const TimeNs t_ns = 1000 * kNsPerSecond + i * 100 * kNsPerMs;
+    const double turned = 1e-3 * i;
+    const SE3 T_world_vehicle =
+        T_world_odom * SE3(SO3::exp({0.0, 0.0, turned}), {30.0 * std::sin(turned), 0.02 * i, 0.0});
+    truth.push_back({t_ns, T_world_vehicle});
+    Vector6d error = Vector6d::Zero();
+    for (int k = 0; k < 6 && i > 0; ++k) error[k] = sigma[k] * random.normal();
+    estimate.push_back({t_ns, T_world_odom.inverse() * T_world_vehicle * SE3::exp(-error)});
+    const Matrix6d covariance = sigma.cwiseAbs2().asDiagonal();
+    honest.push_back({t_ns, i > 0 ? covariance : Matrix6d::Zero()});
+    small.push_back({t_ns, 0.25 * honest.back().covariance});
+  }
+  const Result<PoseConsistency> right = poseConsistency(estimate, honest, truth);
+  ASSERT_TRUE(right.ok());
+  EXPECT_EQ(right->poses, 2999u);
+  EXPECT_NEAR(right->position, 3.0, 0.2);  // of 2999 draws: sigma 0.045
+  EXPECT_NEAR(right->yaw, 1.0, 0.1);       // 0.026
+  EXPECT_NEAR(poseConsistency(estimate, small, truth)->position, 4.0 * right->position, 1e-9);
+  EXPECT_FALSE(poseConsistency(estimate, {}, truth).ok());
+}
+
 }  // namespace
 }  // namespace parkade

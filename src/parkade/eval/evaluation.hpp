@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "parkade/eval/association.hpp"
+#include "parkade/eval/consistency.hpp"
 #include "parkade/eval/metrics.hpp"
 #include "parkade/geometry/alignment.hpp"
 
@@ -45,6 +47,7 @@ struct Evaluation {
   double path_length = 0.0;         ///< of the reference's matched poses, m
   double estimate_path_length = 0;  ///< of the same poses of the estimate, aligned (and scaled), m
   double duration_s = 0.0;          ///< from the first pair to the last
+  std::optional<PoseConsistency> consistency;  ///< set by the caller who has covariances
 
   std::vector<std::string> notes;  ///< what a reader must know to trust the figures
 };

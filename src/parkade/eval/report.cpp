@@ -55,39 +55,43 @@ std::string matchingText(const Evaluation& e, const EvaluationLabels& labels) {
 }  // namespace
 
 std::string evaluationJson(const Evaluation& e, const EvaluationLabels& labels) {
-  const Json json = {
-      {"ape", toJson(e.ape)},
-      {"ape_rotation_deg", toJson(e.ape_rotation_deg)},
-      {"rpe", toJson(e.rpe)},
-      {"drift_percent", e.drift.percent},
-      {"matched", e.pairs.size()},
-      {"coverage", e.pairs.coverage},
-      {"ape_heading_deg", toJson(e.ape_heading_deg)},
-      {"rpe_rotation_deg", toJson(e.rpe_rotation_deg)},
-      {"rpe_pairs",
-       {{"delta", e.options.rpe.delta},
-        {"unit", e.options.rpe.unit},
-        {"all_pairs", e.options.rpe.all_pairs}}},
-      {"drift",
-       {{"percent", e.drift.percent},
-        {"deg_per_m", e.drift.deg_per_m},
-        {"step_m", e.drift.step_m},
-        {"segments", e.drift.segments},
-        {"end_m", e.drift.end_m},
-        {"end_percent", e.drift.end_percent}}},
-      {"final_error_m", e.final_error},
-      {"alignment", toJson(e.alignment, e.options.align)},
-      {"association",
-       {{"tolerance_s", e.options.association.tolerance_s},
-        {"offset_s", e.options.association.offset_s},
-        {"interpolate", e.options.association.interpolate},
-        {"by_index", labels.by_index},
-        {"mean_difference_s", e.pairs.mean_difference_s}}},
-      {"estimate", {{"name", labels.estimate}, {"poses", e.pairs.estimate_poses}}},
-      {"reference", {{"name", labels.reference}, {"poses", e.pairs.reference_poses}}},
-      {"path_m", e.path_length},
-      {"duration_s", labels.by_index ? Json() : Json(e.duration_s)},
-      {"notes", e.notes}};
+  Json json = {{"ape", toJson(e.ape)},
+               {"ape_rotation_deg", toJson(e.ape_rotation_deg)},
+               {"rpe", toJson(e.rpe)},
+               {"drift_percent", e.drift.percent},
+               {"matched", e.pairs.size()},
+               {"coverage", e.pairs.coverage},
+               {"ape_heading_deg", toJson(e.ape_heading_deg)},
+               {"rpe_rotation_deg", toJson(e.rpe_rotation_deg)},
+               {"rpe_pairs",
+                {{"delta", e.options.rpe.delta},
+                 {"unit", e.options.rpe.unit},
+                 {"all_pairs", e.options.rpe.all_pairs}}},
+               {"drift",
+                {{"percent", e.drift.percent},
+                 {"deg_per_m", e.drift.deg_per_m},
+                 {"step_m", e.drift.step_m},
+                 {"segments", e.drift.segments},
+                 {"end_m", e.drift.end_m},
+                 {"end_percent", e.drift.end_percent}}},
+               {"final_error_m", e.final_error},
+               {"alignment", toJson(e.alignment, e.options.align)},
+               {"association",
+                {{"tolerance_s", e.options.association.tolerance_s},
+                 {"offset_s", e.options.association.offset_s},
+                 {"interpolate", e.options.association.interpolate},
+                 {"by_index", labels.by_index},
+                 {"mean_difference_s", e.pairs.mean_difference_s}}},
+               {"estimate", {{"name", labels.estimate}, {"poses", e.pairs.estimate_poses}}},
+               {"reference", {{"name", labels.reference}, {"poses", e.pairs.reference_poses}}},
+               {"path_m", e.path_length},
+               {"duration_s", labels.by_index ? Json() : Json(e.duration_s)},
+               {"notes", e.notes}};
+  if (e.consistency) {
+    json["nees"] = {{"position", e.consistency->position},
+                    {"yaw", e.consistency->yaw},
+                    {"poses", e.consistency->poses}};
+  }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -123,6 +127,11 @@ std::string evaluationTable(const Evaluation& e, const EvaluationLabels& labels)
                         e.drift.end_percent);
   }
   text += "\n";
+  if (e.consistency) {
+    text += fmt::format(
+        "covariance mean NEES of position {:.2f} (3 if honest), of yaw {:.2f} (1), {} poses\n",
+        e.consistency->position, e.consistency->yaw, e.consistency->poses);
+  }
   for (const auto& note : e.notes) text += fmt::format("note: {}\n", note);
   return text;
 }
