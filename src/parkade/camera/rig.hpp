@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +22,7 @@ struct RigCamera {
   TimeNs time_offset_ns = 0;  ///< added to a recorded stamp gives the time on the IMU's clock
   double rate_hz = 0.0;       ///< 0 where unknown
   std::string mask_path;      ///< 8-bit picture, 0 where the own body hides the world; or empty
+  std::vector<std::uint8_t> mask_pixels;  ///< the same row by row where there is no file; or empty
 };
 
 /// Where the IMU sits and how noisy it is (continuous-time densities, Kalibr's field names).

@@ -10,6 +10,8 @@
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
+#include "parkade/core/check.hpp"
+
 namespace parkade {
 namespace {
 
@@ -74,6 +76,17 @@ Result<std::vector<cv::Mat>> readBodyMasks(const Rig& rig) {
   std::vector<cv::Mat> masks(rig.cameras.size());
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
     const RigCamera& camera = rig.cameras[c];
+    if (!camera.mask_pixels.empty()) {
+      const int width = camera.camera.width();
+      const int height = camera.camera.height();
+      PARKADE_CHECK(camera.mask_pixels.size() ==
+                        static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
+                    "mask of {} has {} pixels for {} x {}", camera.name, camera.mask_pixels.size(),
+                    width, height);
+      masks[c].create(height, width, CV_8UC1);
+      std::copy(camera.mask_pixels.begin(), camera.mask_pixels.end(), masks[c].data);
+      continue;
+    }
     if (camera.mask_path.empty()) continue;
     // OpenCV would print about a file that is not there.
     if (std::filesystem::exists(camera.mask_path)) {

@@ -140,19 +140,17 @@ cv::Mat grayOf(const cv::Mat& bgr) {
 
 namespace {
 
-// Draws the chosen cameras; makes its renderer with the first frame set.
+// Draws the chosen cameras.
 class ChosenFrames {
  public:
-  ChosenFrames(std::shared_ptr<const Simulation> simulation, std::vector<std::size_t> chosen,
-               bool gray)
-      : simulation_(std::move(simulation)), chosen_(std::move(chosen)), gray_(gray) {}
+  ChosenFrames(std::shared_ptr<const Simulation> simulation,
+               std::unique_ptr<FrameRenderer> renderer, std::vector<std::size_t> chosen, bool gray)
+      : simulation_(std::move(simulation)),
+        renderer_(std::move(renderer)),
+        chosen_(std::move(chosen)),
+        gray_(gray) {}
 
   Result<FrameSet> draw(int index) {
-    if (!renderer_) {
-      Result<std::unique_ptr<FrameRenderer>> made = FrameRenderer::make(simulation_);
-      if (!made) return made.error();
-      renderer_ = std::move(made).value();
-    }
     FrameRenderer::Wanted wanted(simulation_->trueRig().cameras.size(), false);
     for (const std::size_t camera : chosen_) wanted[camera] = true;
     FrameSet all = renderer_->draw(index, wanted);
@@ -168,9 +166,9 @@ class ChosenFrames {
 
  private:
   std::shared_ptr<const Simulation> simulation_;
+  std::unique_ptr<FrameRenderer> renderer_;
   std::vector<std::size_t> chosen_;
   bool gray_;
-  std::unique_ptr<FrameRenderer> renderer_;
 };
 
 std::vector<std::string> splitNames(const std::string& text) {
@@ -202,12 +200,18 @@ Result<std::unique_ptr<SimSource>> openSimSource(const std::string& address,
   }
   FrameFunction draw;
   if (spec->images) {
+    Result<std::unique_ptr<FrameRenderer>> renderer = FrameRenderer::make(*simulation);
+    if (!renderer) return renderer.error();
     std::vector<std::size_t> chosen;
-    for (const RigCamera& camera : rig.cameras) {
-      chosen.push_back(static_cast<std::size_t>((*simulation)->trueRig().find(camera.name)));
+    for (RigCamera& camera : rig.cameras) {
+      const int index = (*simulation)->trueRig().find(camera.name);
+      chosen.push_back(static_cast<std::size_t>(index));
+      const cv::Mat mask = (*renderer)->bodyMask(index);
+      if (cv::countNonZero(mask) == static_cast<int>(mask.total())) continue;
+      camera.mask_pixels.assign(mask.datastart, mask.dataend);
     }
-    const auto frames =
-        std::make_shared<ChosenFrames>(*simulation, std::move(chosen), options.gray);
+    const auto frames = std::make_shared<ChosenFrames>(*simulation, std::move(renderer).value(),
+                                                       std::move(chosen), options.gray);
     draw = [frames](int index) { return frames->draw(index); };
   }
   return std::make_unique<SimSource>(*simulation, std::move(rig), std::move(draw));

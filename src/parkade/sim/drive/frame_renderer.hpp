@@ -60,8 +60,8 @@ struct SimSourceOptions {
   double duration = 0.0;  ///< s; 0: as the address says
 };
 
-/// Opens an address (parseSimAddress) as a source with pictures, unless it says images=0. Scene and
-/// light are made with the first picture, in the background.
+/// Opens an address (parseSimAddress) as a source with pictures, unless it says images=0. With
+/// pictures, scene and light are made here, and the rig tells where the own body hides the world.
 Result<std::unique_ptr<SimSource>> openSimSource(const std::string& address,
                                                  const SimSourceOptions& options = {});
 
