@@ -16,6 +16,7 @@
 
 #include "parkade/core/random.hpp"
 #include "parkade/mapping/map_check.hpp"
+#include "parkade/mapping/map_drawing.hpp"
 #include "parkade/mapping/map_export.hpp"
 #include "parkade/mapping/map_file.hpp"
 #include "parkade/mapping/map_test_support.hpp"

@@ -15,6 +15,7 @@
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
 #include "parkade/mapping/map_check.hpp"
+#include "parkade/mapping/map_drawing.hpp"
 #include "parkade/mapping/map_export.hpp"
 #include "parkade/mapping/map_file.hpp"
 

@@ -17,7 +17,7 @@
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
 #include "parkade/io/trajectory_io.hpp"
-#include "parkade/mapping/map_export.hpp"
+#include "parkade/mapping/map_drawing.hpp"
 #include "parkade/mapping/map_file.hpp"
 #include "parkade/tracking/draw_tracks.hpp"
 #include "parkade/tracking/overlap.hpp"

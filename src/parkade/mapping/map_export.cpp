@@ -8,8 +8,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
+
+#include "parkade/mapping/map_drawing.hpp"
 
 namespace parkade {
 namespace {
@@ -32,14 +33,6 @@ Status writeFile(const std::string& path, const std::string& content) {
   std::filesystem::rename(temporary, path, code);
   if (code) return Error{fmt::format("{}: cannot be written: {}", path, code.message())};
   return {};
-}
-
-// A damaged file may place cells or slots kilometres apart: no picture of terabytes then.
-Status checkPictureSize(double width, double height) {
-  constexpr double kMostPixels = 3e8;
-  if (width >= 1.0 && height >= 1.0 && width * height <= kMostPixels) return {};
-  return Error{fmt::format("the map's picture would have {:.0f} x {:.0f} pixels, more than {:.0f}",
-                           width, height, kMostPixels)};
 }
 
 LayeredGrid::Bounds boundsOf(const ParkingMap& map) {
@@ -191,115 +184,6 @@ std::vector<Eigen::Vector2d> convexHull(std::vector<Eigen::Vector2d> points) {
   return hull;
 }
 
-cv::Vec3b colourOf(SemanticClass semantic_class) {
-  switch (semantic_class) {
-    case SemanticClass::kFloor:
-      return {70, 66, 62};
-    case SemanticClass::kSlotLine:
-    case SemanticClass::kPaintedNumber:
-      return {240, 240, 240};
-    case SemanticClass::kLaneLine:
-    case SemanticClass::kStopLine:
-      return {90, 220, 250};
-    case SemanticClass::kArrow:
-      return {250, 180, 80};
-    case SemanticClass::kSpeedLimitPaint:
-    case SemanticClass::kSpeedLimitSign:
-      return {90, 90, 250};
-    case SemanticClass::kCrossing:
-      return {200, 210, 120};
-    case SemanticClass::kSpeedBump:
-      return {40, 190, 230};
-    case SemanticClass::kWheelStop:
-      return {150, 110, 190};
-    case SemanticClass::kPillar:
-    case SemanticClass::kWall:
-      return {150, 140, 130};
-    case SemanticClass::kZoneMarker:
-    case SemanticClass::kGuideSign:
-      return {120, 200, 60};
-    case SemanticClass::kVehicle:
-      return {80, 80, 200};
-    case SemanticClass::kPedestrian:
-      return {200, 60, 230};
-    case SemanticClass::kCeiling:
-    case SemanticClass::kUnknown:
-      break;
-  }
-  return {38, 36, 34};
-}
-
-struct Picture {
-  cv::Mat image;
-  Eigen::Vector2d top_left;  // world, outer corner
-  double metres_per_px;
-
-  [[nodiscard]] Eigen::Vector2d world(int u, int v) const {
-    return {top_left.x() + (u + 0.5) * metres_per_px, top_left.y() - (v + 0.5) * metres_per_px};
-  }
-};
-
-void drawSlot(Picture& picture, const MapSlot& slot) {
-  const cv::Vec3d fill = slot.probability_free > 0.65   ? cv::Vec3d(80, 170, 60)
-                         : slot.probability_free < 0.35 ? cv::Vec3d(70, 70, 190)
-                                                        : cv::Vec3d(60, 190, 210);
-  Eigen::Vector2d low = slot.corners[0];
-  Eigen::Vector2d high = slot.corners[0];
-  for (const Eigen::Vector2d& corner : slot.corners) {
-    low = low.cwiseMin(corner);
-    high = high.cwiseMax(corner);
-  }
-  const double scale = 1.0 / picture.metres_per_px;
-  const int u0 = std::max(0, static_cast<int>((low.x() - picture.top_left.x()) * scale));
-  const int u1 =
-      std::min(picture.image.cols - 1, static_cast<int>((high.x() - picture.top_left.x()) * scale));
-  const int v0 = std::max(0, static_cast<int>((picture.top_left.y() - high.y()) * scale));
-  const int v1 =
-      std::min(picture.image.rows - 1, static_cast<int>((picture.top_left.y() - low.y()) * scale));
-  for (int v = v0; v <= v1; ++v) {
-    for (int u = u0; u <= u1; ++u) {
-      const Eigen::Vector2d p = picture.world(u, v);
-      bool all_left = true;
-      bool all_right = true;
-      for (std::size_t i = 0; i < 4; ++i) {
-        const Eigen::Vector2d edge = slot.corners[(i + 1) % 4] - slot.corners[i];
-        const Eigen::Vector2d to = p - slot.corners[i];
-        const double side = edge.x() * to.y() - edge.y() * to.x();
-        all_left = all_left && side >= 0.0;
-        all_right = all_right && side <= 0.0;
-      }
-      if (!all_left && !all_right) continue;
-      auto& pixel = picture.image.at<cv::Vec3b>(v, u);
-      for (int c = 0; c < 3; ++c)
-        pixel[c] = cv::saturate_cast<uchar>(0.45 * pixel[c] + 0.55 * fill[c]);
-    }
-  }
-}
-
-// What drawMap() shows, from the lower left to the upper right edge, metres.
-struct PictureArea {
-  Eigen::Vector2d low;
-  Eigen::Vector2d high;
-};
-
-PictureArea pictureArea(const ParkingMap& map) {
-  constexpr double kFar = std::numeric_limits<double>::max();
-  Eigen::Vector2d low = Eigen::Vector2d::Constant(kFar);
-  Eigen::Vector2d high = Eigen::Vector2d::Constant(-kFar);
-  if (const std::optional<LayeredGrid::Bounds> bounds = map.grid.bounds()) {
-    low = map.grid.resolution() * bounds->min.cast<double>();
-    high = map.grid.resolution() * (bounds->max + Eigen::Vector2i::Ones()).cast<double>();
-  }
-  for (const MapSlot& slot : map.slots) {
-    for (const Eigen::Vector2d& corner : slot.corners) {
-      low = low.cwiseMin(corner);
-      high = high.cwiseMax(corner);
-    }
-  }
-  if (low.x() > high.x()) low = high = Eigen::Vector2d::Zero();  // an empty map
-  return {low, high};
-}
-
 }  // namespace
 
 Status exportNav2(const ParkingMap& map, GridLayer layer, const std::string& folder) {
@@ -307,7 +191,7 @@ Status exportNav2(const ParkingMap& map, GridLayer layer, const std::string& fol
   const int width = bounds.max.x() - bounds.min.x() + 1;
   const int height = bounds.max.y() - bounds.min.y() + 1;
   const Eigen::Vector2d size = (bounds.max - bounds.min + Eigen::Vector2i::Ones()).cast<double>();
-  if (const Status fits = checkPictureSize(size.x(), size.y()); !fits) return fits;
+  if (const Status fits = checkPictureSize(size); !fits) return fits;
   const std::string name(kGridLayerNames[static_cast<std::size_t>(layer)]);
   std::string pgm = fmt::format("P5\n{} {}\n255\n", width, height);
   pgm.reserve(pgm.size() + static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
@@ -370,36 +254,6 @@ Status exportLanelet2(const ParkingMap& map, const std::string& path) {
     osm.way(corners, {{"type", "parking_lot"}, {"area", "yes"}});
   }
   return writeFile(path, osm.text());
-}
-
-Result<cv::Mat> drawMap(const ParkingMap& map, double metres_per_px) {
-  const auto [low, high] = pictureArea(map);
-  const Eigen::Vector2d size = ((high - low) / metres_per_px).cwiseMax(1.0);
-  if (const Status fits = checkPictureSize(size.x(), size.y()); !fits) return fits.error();
-  Picture picture{cv::Mat(static_cast<int>(std::ceil(size.y())),
-                          static_cast<int>(std::ceil(size.x())), CV_8UC3, cv::Scalar(38, 36, 34)),
-                  Eigen::Vector2d(low.x(), high.y()), metres_per_px};
-  for (int v = 0; v < picture.image.rows; ++v) {
-    for (int u = 0; u < picture.image.cols; ++u) {
-      const Eigen::Vector2i cell = map.grid.cellOf(picture.world(u, v));
-      // Later layers lie on top; seen-and-absent never hides what another layer shows.
-      for (const GridLayer layer : kGridLayers) {
-        const GridCell shown = map.grid.at(layer, cell);
-        auto& pixel = picture.image.at<cv::Vec3b>(v, u);
-        if (!shown.known() || shown.log_odds <= 0) continue;
-        if (shown.semantic_class == SemanticClass::kFloor && pixel != cv::Vec3b(38, 36, 34))
-          continue;
-        pixel = colourOf(shown.semantic_class);
-      }
-    }
-  }
-  for (const MapSlot& slot : map.slots) drawSlot(picture, slot);
-  return picture.image;
-}
-
-Eigen::Vector2d mapPictureCorner(const ParkingMap& map) {
-  const PictureArea area = pictureArea(map);
-  return {area.low.x(), area.high.y()};
 }
 
 }  // namespace parkade

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <opencv2/core/mat.hpp>
 #include <string>
 
 #include "parkade/core/result.hpp"
@@ -26,12 +25,5 @@ Status exportGeoJson(const ParkingMap& map, const std::string& path);
 /// width per slot, from the aisle to the rear, and one polygon parking_lot around them all.
 /// Positions stand in local_x and local_y; lat and lon are nominal.
 Status exportLanelet2(const ParkingMap& map, const std::string& path);
-
-/// The map as a picture (CV_8UC3, BGR), north up: layers in colour, free slots green, occupied
-/// ones red, unsure ones yellow. Fails where the map is too wide for one picture.
-Result<cv::Mat> drawMap(const ParkingMap& map, double metres_per_px = 0.05);
-
-/// Where the upper left edge of that picture lies, metres.
-Eigen::Vector2d mapPictureCorner(const ParkingMap& map);
 
 }  // namespace parkade

@@ -94,25 +94,8 @@ TEST(MapExport, UnwritableFolderIsNamed) {
   EXPECT_THAT(status.error().message, HasSubstr("/nowhere/map.geojson"));
 }
 
-TEST(MapExport, PictureShowsFreeAndOccupiedSlots) {
-  ParkingMap map = sampleMap();
-  map.grid = LayeredGrid();
-  const Result<cv::Mat> drawn = drawMap(map, 0.1);
-  ASSERT_TRUE(drawn) << drawn.error().message;
-  const cv::Mat& picture = *drawn;
-  ASSERT_EQ(picture.cols, 150);
-  ASSERT_EQ(picture.rows, 50);
-  const auto free = picture.at<cv::Vec3b>(25, 12);
-  const auto occupied = picture.at<cv::Vec3b>(25, 37);
-  EXPECT_GT(free[1], free[2]);
-  EXPECT_GT(occupied[2], occupied[1]);
-}
-
 TEST(MapExport, MapOfAbsurdExtentIsRefused) {
   ParkingMap map = sampleMap();
-  map.slots[0].corners[0] = {1e12, 0.0};
-  EXPECT_THAT(drawMap(map).error().message, HasSubstr("pixels, more than"));
-  map = sampleMap();
   map.grid.add(GridLayer::kParkingLines, {1e6, -1e6}, SemanticClass::kSlotLine, 1.0F);
   EXPECT_THAT(exportNav2(map, GridLayer::kDynamic, folder()).error().message,
               HasSubstr("pixels, more than"));
