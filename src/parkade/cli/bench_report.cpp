@@ -8,6 +8,9 @@
 
 #include "parkade/cli/eval_map.hpp"
 #include "parkade/cli/map_truth_file.hpp"
+#include "parkade/cli/report_files.hpp"
+#include "parkade/cli/report_map.hpp"
+#include "parkade/cli/run_report.hpp"
 #include "parkade/eval/charts.hpp"
 #include "parkade/eval/evaluation.hpp"
 #include "parkade/eval/html_page.hpp"
@@ -20,14 +23,6 @@
 
 namespace parkade::cli {
 namespace {
-
-svg::Points groundPoints(const Trajectory& poses) {
-  svg::Points points;
-  for (const StampedPose& pose : poses) {
-    points.emplace_back(pose.T_world_body.translation().head<2>());
-  }
-  return points;
-}
 
 std::optional<GroundPicture> planPicture(const std::string& sequence) {
   const Result<sim::Garage> garage = sim::readGarageTruth(joinPath(sequence, "truth/garage.json"));
@@ -87,31 +82,40 @@ void addRun(const JudgedRun& run, const Trajectory& truth, DriveCharts& charts) 
   }
 }
 
-void addPictures(const JudgedRun& run, HtmlPage& page) {
-  const auto add = [&](const char* name, const std::string& caption) {
-    const Result<std::string> bytes = readFile(joinPath(run.folder, name));
-    if (bytes) page.picture(*bytes, caption);
-  };
-  add("pictures/tracks.jpg",
-      fmt::format("What {} follows half way: from blue (new) to red (long followed)",
-                  run.record.method));
-  add("pictures/stitched.jpg", "All its cameras stitched on the ground; ahead is up");
+// The run that shows the whole system best: the last one with a map, else the last that tracked.
+const JudgedRun* shownRun(const std::vector<const JudgedRun*>& runs) {
+  for (const char* file : {"map.db", "trajectory.tum"}) {
+    for (auto at = runs.rbegin(); at != runs.rend(); ++at) {
+      if ((*at)->record.failed) continue;
+      if (std::filesystem::is_regular_file(joinPath((*at)->folder, file))) return *at;
+    }
+  }
+  return nullptr;
 }
 
-void addDrive(const std::vector<const JudgedRun*>& runs, HtmlPage& page) {
+void addShownRun(const JudgedRun& shown, HtmlPage& page) {
+  const ReportedRun run = readReportedRun(shown.folder);
+  page.subsection(fmt::format("What {} saw and mapped", shown.record.method));
+  addCameraFigures(run, page);
+  addMapFigures(run, page);
+  addLayerFigures(run, page);
+  addLocalMapFigures(run, page);
+}
+
+void addDrive(const std::vector<const JudgedRun*>& runs, bool in_full, HtmlPage& page) {
   const BenchRecord& first = runs.front()->record;
   page.section(fmt::format("{} / {}{}, seed {}", first.garage, first.route,
                            first.condition.empty() ? "" : ", " + first.condition, first.seed));
-  const JudgedRun* shown = nullptr;
+  const JudgedRun* judged = nullptr;
   for (const JudgedRun* run : runs) {
     if (run->record.failed) {
       page.paragraph(fmt::format("{} failed: {}", run->record.method, run->record.reason));
     } else {
-      shown = run;  // the last of the methods is the whole system
+      judged = run;
     }
   }
-  if (shown == nullptr) return;
-  const Result<TrajectoryFile> truth = readReference(shown->sequence);
+  if (judged == nullptr) return;
+  const Result<TrajectoryFile> truth = readReference(judged->sequence);
   if (!truth || truth->poses.empty()) return;
   DriveCharts charts;
   for (const JudgedRun* run : runs) {
@@ -119,7 +123,7 @@ void addDrive(const std::vector<const JudgedRun*>& runs, HtmlPage& page) {
   }
   charts.ways.push_back({"truth", groundPoints(truth->poses), true});
   page.beginFigures();
-  page.svg(groundChart("Ways over the plan, m", planPicture(shown->sequence), charts.ways),
+  page.svg(groundChart("Ways over the plan, m", planPicture(judged->sequence), charts.ways),
            "Estimated ways, first poses joined with the truth's (the paper's Fig. 9)");
   page.svg(lineChart("Position error, m", "time from the beginning, s", charts.errors),
            "Position error over time");
@@ -138,8 +142,13 @@ void addDrive(const std::vector<const JudgedRun*>& runs, HtmlPage& page) {
                                   run->record.method));
     break;  // one is enough for a page
   }
-  addPictures(*shown, page);
+  const JudgedRun* shown = shownRun(runs);
+  if (shown != nullptr) {
+    page.svg(timingChart(shown->folder),
+             fmt::format("Where the time of {} goes", shown->record.method));
+  }
   page.endFigures();
+  if (shown != nullptr && in_full) addShownRun(*shown, page);
 }
 
 }  // namespace
@@ -149,6 +158,9 @@ Status writeBenchReport(const PaperBenchOptions& options, const std::vector<Judg
   HtmlPage page("Parkade: bench");
   page.paragraph(setting);
   for (const TextTable& table : tables) page.table(table);
+  // Of more drives the page would be too heavy; each run has a page of its own.
+  constexpr int kInFull = 2;
+  int shown_in_full = 0;
   for (std::size_t begin = 0; begin < runs.size();) {
     const BenchRecord& first = runs[begin].record;
     std::vector<const JudgedRun*> of_drive;
@@ -161,7 +173,8 @@ Status writeBenchReport(const PaperBenchOptions& options, const std::vector<Judg
       }
       of_drive.push_back(&runs[end]);
     }
-    addDrive(of_drive, page);
+    addDrive(of_drive, shown_in_full < kInFull, page);
+    ++shown_in_full;
     begin = end;
   }
   return writeFileAtomic(joinPath(options.out, "report.html"), page.str());

@@ -14,6 +14,7 @@
 #include "parkade/cli/open_source.hpp"
 #include "parkade/cli/run_outputs.hpp"
 #ifdef PARKADE_WITH_REPORT
+#include "parkade/cli/report_pictures.hpp"
 #include "parkade/cli/run_report.hpp"
 #endif
 #include "parkade/core/options.hpp"
@@ -92,7 +93,8 @@ Status runSequence(const RunArguments& arguments) {
   }
 #ifdef PARKADE_WITH_REPORT
   const SensorSourceInfo& info = opened->source->info();
-  ReportPictures pictures(arguments.out, opened->rig, info.start_ns, info.end_ns);
+  ReportPictures pictures(arguments.out, opened->rig, info.start_ns, info.end_ns,
+                          method != RunMethod::kVis);
   (*run)->addObserver(&pictures);
 #endif
   ProgressPrinter progress("run");
@@ -113,7 +115,7 @@ Status runSequence(const RunArguments& arguments) {
   if (Status saved = writeMap(arguments.out, arguments.source.spec, **run); !saved) return saved;
   const RunSummary& summary = (*run)->summary();
 #ifdef PARKADE_WITH_REPORT
-  if (!pictures.status()) return pictures.status();
+  if (Status drawn = pictures.finish(); !drawn) return drawn;
   if (summary.poses > 0) {
     const Status page = writeRunReport(arguments.out, joinPath(arguments.out, "report.html"));
     if (!page) return page;

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "parkade/cli/report_pictures.hpp"
 #include "parkade/core/log.hpp"
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
@@ -27,10 +28,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 12> kRunFiles = {
-    "map.db",         "trajectory.tum", "trajectory_vio.tum",  "trajectory_final.tum",
-    "covariance.csv", "health.csv",     "timing.json",         "metrics.json",
-    "config.yaml",    "report.html",    "pictures/tracks.jpg", "pictures/stitched.jpg"};
+constexpr std::array<const char*, 10> kRunFiles = {
+    "map.db",     "trajectory.tum", "trajectory_vio.tum", "trajectory_final.tum", "covariance.csv",
+    "health.csv", "timing.json",    "metrics.json",       "config.yaml",          "report.html"};
 constexpr const char* kConfigHeading = "# Effective configuration of 'parkade run'";
 
 bool isRunFolder(const fs::path& folder) {
@@ -122,6 +122,7 @@ Status prepareRunFolder(const std::string& folder, bool force) {
   }
   if (Status made = makeFolders(folder); !made) return made;
   for (const char* name : kRunFiles) fs::remove(fs::path(folder) / name, code);
+  for (const char* name : kReportPictures) fs::remove(fs::path(folder) / name, code);
   return {};
 }
 

@@ -4,90 +4,21 @@
 
 #include <fmt/core.h>
 
-#include <array>
-#include <cstdlib>
-#include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
-#include "parkade/bev/stitcher.hpp"
+#include "parkade/cli/report_files.hpp"
+#include "parkade/cli/report_map.hpp"
 #include "parkade/eval/bench_tables.hpp"
 #include "parkade/eval/charts.hpp"
 #include "parkade/eval/html_page.hpp"
 #include "parkade/io/file.hpp"
-#include "parkade/io/image_file.hpp"
 #include "parkade/io/trajectory_io.hpp"
-#include "parkade/mapping/map_drawing.hpp"
-#include "parkade/mapping/map_file.hpp"
-#include "parkade/tracking/draw_tracks.hpp"
-#include "parkade/tracking/overlap.hpp"
 
 namespace parkade::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string textOf(const std::string& path) {
-  const Result<std::string> text = readFile(path);
-  return text ? *text : "";
-}
-
-Json jsonOf(const std::string& path) {
-  Json json = Json::parse(textOf(path), nullptr, false);
-  return json.is_object() ? json : Json::object();
-}
-
-double number(const Json& json, const std::string& pointer) {
-  const Json::json_pointer at(pointer);
-  return json.contains(at) && json[at].is_number() ? json[at].get<double>() : std::nan("");
-}
-
-svg::Points groundPoints(const Trajectory& poses) {
-  svg::Points points;
-  for (const StampedPose& pose : poses) {
-    points.emplace_back(pose.T_world_body.translation().head<2>());
-  }
-  return points;
-}
-
-// Columns of health.csv over the time from its first row.
-class HealthTable {
- public:
-  explicit HealthTable(const std::string& path) {
-    std::stringstream lines(textOf(path));
-    std::string line;
-    if (std::getline(lines, line)) header_ = split(line);
-    while (std::getline(lines, line)) {
-      const std::vector<std::string> row = split(line);
-      if (row.size() == header_.size()) rows_.push_back(row);
-    }
-  }
-
-  // Only rows with a pose.
-  [[nodiscard]] svg::Points over(const std::string& column) const {
-    svg::Points points;
-    const auto at = std::find(header_.begin(), header_.end(), column);
-    if (at == header_.end()) return points;
-    const std::size_t index = static_cast<std::size_t>(at - header_.begin());
-    for (const auto& row : rows_) {
-      if (row[1] == "initialising") continue;
-      const double t = std::strtod(row[0].c_str(), nullptr);
-      const double start = std::strtod(rows_.front()[0].c_str(), nullptr);
-      points.emplace_back(t - start, std::strtod(row[index].c_str(), nullptr));
-    }
-    return points;
-  }
-
- private:
-  static std::vector<std::string> split(const std::string& line) {
-    std::vector<std::string> parts;
-    std::stringstream stream(line);
-    for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
-    return parts;
-  }
-  std::vector<std::string> header_;
-  std::vector<std::vector<std::string>> rows_;
-};
 
 TextTable summaryTable(const Json& metrics, const Json& timing) {
   TextTable table{"The run", "", {"", ""}, {}};
@@ -96,63 +27,19 @@ TextTable summaryTable(const Json& metrics, const Json& timing) {
   };
   row("source", metrics.value("source", "-"));
   row("method", metrics.value("method", "-"));
-  row("recorded", figureText(number(timing, "/recorded_s"), 1) + " s");
-  row("driven (estimate)", figureText(number(metrics, "/path_length_m"), 1) + " m");
-  row("poses of frame sets", fmt::format("{} of {}", figureText(number(metrics, "/poses"), 0),
-                                         figureText(number(metrics, "/frame_sets"), 0)));
-  row("start-up", figureText(number(metrics, "/start_up_s"), 2) + " s");
+  row("recorded", figureText(reportNumber(timing, "/recorded_s"), 1) + " s");
+  row("driven (estimate)", figureText(reportNumber(metrics, "/path_length_m"), 1) + " m");
+  row("poses of frame sets", fmt::format("{} of {}", figureText(reportNumber(metrics, "/poses"), 0),
+                                         figureText(reportNumber(metrics, "/frame_sets"), 0)));
+  row("start-up", figureText(reportNumber(metrics, "/start_up_s"), 2) + " s");
   for (const char* state : {"tracking", "degraded", "lost"}) {
-    row(state, figureText(number(metrics, std::string("/health/") + state), 0) + " frame sets");
+    row(state,
+        figureText(reportNumber(metrics, std::string("/health/") + state), 0) + " frame sets");
   }
-  row("tracks per frame set", figureText(number(metrics, "/mean_tracks"), 0));
-  row("real-time factor", figureText(number(timing, "/real_time_factor"), 2));
-  row("peak memory", figureText(number(timing, "/peak_memory_mb"), 0) + " MB");
+  row("tracks per frame set", figureText(reportNumber(metrics, "/mean_tracks"), 0));
+  row("real-time factor", figureText(reportNumber(timing, "/real_time_factor"), 2));
+  row("peak memory", figureText(reportNumber(timing, "/peak_memory_mb"), 0) + " MB");
   return table;
-}
-
-std::string timingChart(const Json& timing) {
-  std::vector<ChartBar> bars;
-  if (timing.contains("stages")) {
-    for (const auto& [name, stage] : timing["stages"].items()) {
-      const double mean = number(stage, "/mean_ms");
-      const double p95 = number(stage, "/p95_ms");
-      bars.push_back({name, mean, p95, fmt::format("{:.1f} / {:.1f}", mean, p95)});
-    }
-  }
-  return barChart("Time of a call: mean / p95, ms", bars);
-}
-
-// The map as a picture with ids over it; its edges are those of drawMap().
-struct DrawnMap {
-  ParkingMap map;
-  std::optional<GroundPicture> picture;
-};
-
-std::optional<DrawnMap> drawnMap(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) return std::nullopt;
-  Result<ParkingMap> map = loadMap(path);
-  if (!map) return std::nullopt;
-  DrawnMap drawn{std::move(map).value(), {}};
-  constexpr double kMetresPerPx = 0.1;
-  const Result<cv::Mat> image = drawMap(drawn.map, kMetresPerPx);
-  if (!image) return drawn;
-  ImageEncoding png;
-  png.png = true;
-  const Result<std::string> bytes = encodeImage(*image, png);
-  if (!bytes) return drawn;
-  drawn.picture = GroundPicture{dataUri("image/png", *bytes), mapPictureCorner(drawn.map),
-                                kMetresPerPx * Eigen::Vector2d(image->cols, image->rows)};
-  return drawn;
-}
-
-std::vector<GroundLabel> slotLabels(const ParkingMap& map) {
-  std::vector<GroundLabel> labels;
-  for (const MapSlot& slot : map.slots) {
-    const Eigen::Vector2d middle =
-        0.25 * (slot.corners[0] + slot.corners[1] + slot.corners[2] + slot.corners[3]);
-    labels.push_back({slot.number.empty() ? std::to_string(slot.id) : slot.number, middle});
-  }
-  return labels;
 }
 
 const char* availabilityText(double probability_free) {
@@ -229,54 +116,25 @@ void addErrors(const ReportTruth& truth, HtmlPage& page) {
   page.endFigures();
 }
 
-void addPictures(const std::string& run_folder, HtmlPage& page) {
-  const std::string tracks = textOf(joinPath(run_folder, "pictures/tracks.jpg"));
-  const std::string stitched = textOf(joinPath(run_folder, "pictures/stitched.jpg"));
-  if (tracks.empty() && stitched.empty()) return;
-  page.section("What the cameras see, half way");
-  page.beginFigures();
-  if (!tracks.empty()) {
-    page.picture(tracks, "Tracks: from blue (new) to red (followed for long), with their ways");
-  }
-  if (!stitched.empty()) page.picture(stitched, "All cameras stitched on the ground; ahead is up");
-  page.endFigures();
-}
-
 }  // namespace
 
-ReportPictures::ReportPictures(std::string folder, Rig rig, TimeNs begin_ns, TimeNs end_ns)
-    : folder_(joinPath(folder, "pictures")),
-      rig_(std::move(rig)),
-      middle_ns_(begin_ns + (end_ns - begin_ns) / 2) {}
-
-void ReportPictures::onTracks(const TracksEvent& event) {
-  if (!drawn_ && event.frames.t_ns >= middle_ns_) draw(event);
-  previous_ = event.tracks;
-}
-
-void ReportPictures::draw(const TracksEvent& event) {
-  drawn_ = true;
-  status_ = makeFolders(folder_);
-  if (!status_) return;
-  ImageEncoding jpeg;
-  jpeg.jpeg_quality = 80;
-  const cv::Mat tracks =
-      drawTracks(event.frames, event.tracks, previous_, event.report, event.prior, rig_, "");
-  status_ = writeImage(joinPath(folder_, "tracks.jpg"), tracks, jpeg);
-  if (!status_) return;
-  BevStitcher stitcher(rig_, BevOptions{});
-  const Result<std::vector<cv::Mat>> masks = readBodyMasks(rig_);
-  for (std::size_t i = 0; masks && i < masks->size(); ++i) {
-    if (!(*masks)[i].empty()) stitcher.setMask(static_cast<int>(i), (*masks)[i]);
+std::string timingChart(const std::string& run_folder) {
+  const Json timing = reportJson(joinPath(run_folder, "timing.json"));
+  std::vector<ChartBar> bars;
+  if (timing.contains("stages")) {
+    for (const auto& [name, stage] : timing["stages"].items()) {
+      const double mean = reportNumber(stage, "/mean_ms");
+      const double p95 = reportNumber(stage, "/p95_ms");
+      bars.push_back({name, mean, p95, fmt::format("{:.1f} / {:.1f}", mean, p95)});
+    }
   }
-  status_ =
-      writeImage(joinPath(folder_, "stitched.jpg"), stitcher.stitch(event.frames).image, jpeg);
+  return barChart("Time of a call: mean / p95, ms", bars);
 }
 
 Status writeRunReport(const std::string& run_folder, const std::string& page_path,
                       const std::optional<ReportTruth>& truth) {
-  const Json metrics = jsonOf(joinPath(run_folder, "metrics.json"));
-  const Json timing = jsonOf(joinPath(run_folder, "timing.json"));
+  const Json metrics = reportJson(joinPath(run_folder, "metrics.json"));
+  const Json timing = reportJson(joinPath(run_folder, "timing.json"));
   const auto trajectory = readTrajectory(joinPath(run_folder, "trajectory.tum"));
   if (!trajectory) return trajectory.error();
   HtmlPage page(fmt::format("Parkade: {}, {}", metrics.value("source", run_folder),
@@ -284,20 +142,17 @@ Status writeRunReport(const std::string& run_folder, const std::string& page_pat
   page.table(summaryTable(metrics, timing));
   if (truth) addErrors(*truth, page);
 
-  const std::optional<DrawnMap> map = drawnMap(joinPath(run_folder, "map.db"));
-  page.section(map ? "Map" : "Way");
-  page.beginFigures();
-  const std::vector<ChartLine> way{{"way", groundPoints(trajectory->poses), false}};
-  if (map && map->picture) {
-    page.svg(groundChart("Map and way, m", map->picture, way), "The way on the map");
-    page.svg(groundChart("Slots: painted number, or id", map->picture, {}, slotLabels(map->map)),
-             "Slots: green free, red occupied, yellow not known");
-  } else {
-    page.svg(groundChart("Way over the ground, m", std::nullopt, way), "The way");
-  }
-  page.endFigures();
-  if (map && !map->map.slots.empty()) page.foldedTable(slotTable(map->map));
-  if (map && !map->map.objects.empty()) page.foldedTable(objectTable(map->map));
+  const ReportedRun run = readReportedRun(run_folder);
+  page.section(run.map ? "Map" : "Way");
+  addMapFigures(run, page);
+  if (run.map && !run.map->slots.empty()) page.foldedTable(slotTable(*run.map));
+  if (run.map && !run.map->objects.empty()) page.foldedTable(objectTable(*run.map));
+  page.section("The five layers");
+  addLayerFigures(run, page);
+  page.section("Local and global map");
+  addLocalMapFigures(run, page);
+  page.section("What the cameras see");
+  addCameraFigures(run, page);
 
   page.section("Health and time");
   page.beginFigures();
@@ -311,9 +166,8 @@ Status writeRunReport(const std::string& run_folder, const std::string& page_pat
   page.svg(lineChart("Observations per frame set", "time, s",
                      {{"tracks", health.over("tracks"), false}}),
            "Tracks that the cameras follow");
-  page.svg(timingChart(timing), "Where the time goes");
+  page.svg(timingChart(run_folder), "Where the time goes");
   page.endFigures();
-  addPictures(run_folder, page);
   return writeFileAtomic(page_path, page.str());
 }
 

@@ -5,32 +5,10 @@
 #include <optional>
 #include <string>
 
-#include "parkade/camera/rig.hpp"
 #include "parkade/core/result.hpp"
 #include "parkade/eval/evaluation.hpp"
-#include "parkade/pipeline/mapping_run.hpp"
 
 namespace parkade::cli {
-
-/// Keeps two pictures of the middle of a run for its report: FOLDER/pictures/tracks.jpg (what the
-/// front end follows) and stitched.jpg (all cameras on the ground).
-class ReportPictures : public PipelineObserver {
- public:
-  /// begin_ns and end_ns: of the source, as far as known.
-  ReportPictures(std::string folder, Rig rig, TimeNs begin_ns, TimeNs end_ns);
-  void onTracks(const TracksEvent& event) override;
-  [[nodiscard]] const Status& status() const { return status_; }
-
- private:
-  void draw(const TracksEvent& event);
-
-  std::string folder_;
-  Rig rig_;
-  TimeNs middle_ns_;
-  TrackSet previous_;
-  bool drawn_ = false;
-  Status status_;
-};
 
 /// What is known from outside about where the car was.
 struct ReportTruth {
@@ -38,9 +16,12 @@ struct ReportTruth {
   Trajectory reference;
 };
 
-/// Writes a page about a run from the files of its folder: way, map, slots, health, timing,
-/// pictures; with a truth also errors. What the run did not write is left out. Fails where
-/// the folder holds no trajectory or the page cannot be written.
+/// How long the stages of a run took, as bars.
+std::string timingChart(const std::string& run_folder);
+
+/// Writes a page about a run from the files of its folder: way, map, slots, layers, local map,
+/// health, timing, pictures; with a truth also errors. What the method does not give is said in a
+/// line in its place. Fails where the folder holds no trajectory or the page cannot be written.
 Status writeRunReport(const std::string& run_folder, const std::string& page_path,
                       const std::optional<ReportTruth>& truth = {});
 

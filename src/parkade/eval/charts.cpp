@@ -108,7 +108,8 @@ Bounds boundsOf(const std::vector<ChartLine>& lines) {
 Bounds groundView(const std::optional<GroundPicture>& picture,
                   const std::vector<ChartLine>& lines) {
   Bounds view = boundsOf(lines);
-  if (view.empty() && picture) {
+  if (picture && (picture->whole || view.empty())) {
+    view = {};
     view.add(picture->top_left);
     view.add(picture->top_left + Vector2d(picture->size.x(), -picture->size.y()));
     return view;

@@ -26,6 +26,7 @@ struct GroundPicture {
   std::string address;                                 ///< data: URI
   Eigen::Vector2d top_left = Eigen::Vector2d::Zero();  ///< its upper left edge, m
   Eigen::Vector2d size = Eigen::Vector2d::Ones();      ///< m
+  bool whole = false;  ///< the view is the picture, wherever the ways are
 };
 
 struct GroundLabel {

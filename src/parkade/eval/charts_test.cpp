@@ -28,6 +28,15 @@ TEST(Charts, GroundHasThePictureBelowAndTheTruthFirst) {
   EXPECT_THAT(text, HasSubstr(">7</text>"));
 }
 
+TEST(Charts, AWholePictureIsTheViewWhereverTheWaysAre) {
+  GroundPicture ground{"data:,x", {-5.0, 15.0}, {30.0, 20.0}};
+  ground.whole = true;
+  // 30 by 20 m on 432 pixels of width.
+  const std::string text =
+      groundChart("a way", ground, {{"far", {{90.0, 0.0}, {99.0, 0.0}}, false}});
+  EXPECT_THAT(text, HasSubstr("width=\"432\" height=\"288\""));
+}
+
 TEST(Charts, GroundHasEqualAxes) {
   // 20 m across and 10 m up with 6 m around: 32 by 22 m on 432 pixels of width.
   const std::string text = groundChart("a way", std::nullopt, kWays);

@@ -19,9 +19,13 @@ constexpr const char* kStyle =
     ".card,figure{background:#fff;border:1px solid #dde1e7;border-radius:8px;padding:10px;"
     "margin:0 0 12px;min-width:0}\n"
     ".figures{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,440px),1fr));"
-    "gap:12px;margin:0 0 12px}.figures figure{margin:0}\n"
+    "gap:12px;margin:0 0 12px;align-items:start}.figures figure{margin:0}\n"
+    ".small{grid-template-columns:repeat(auto-fit,minmax(min(100%,220px),1fr))}\n"
     "figure img{display:block;width:100%;height:auto}\n"
     "figcaption{font-size:.875em;color:#4a5563;margin-top:6px;overflow-wrap:anywhere}\n"
+    ".legend{display:block;margin-top:4px}.legend span{display:inline-block;margin-right:12px}\n"
+    ".legend i{display:inline-block;width:.8em;height:.8em;margin-right:5px;border:1px solid "
+    "#8a8a8a}\n"
     ".scroll{overflow-x:auto}\n"
     "table{border-collapse:collapse;font-size:.875em;font-variant-numeric:tabular-nums}\n"
     "th,td{padding:4px 10px;border-bottom:1px solid #e6e9ee;text-align:right;white-space:nowrap}\n"
@@ -94,6 +98,10 @@ void HtmlPage::section(std::string_view title) {
   body_ += fmt::format("<h2>{}</h2>\n", escaped(title));
 }
 
+void HtmlPage::subsection(std::string_view title) {
+  body_ += fmt::format("<h3>{}</h3>\n", escaped(title));
+}
+
 void HtmlPage::paragraph(std::string_view text) {
   body_ += fmt::format("<p>{}</p>\n", escaped(text));
 }
@@ -131,27 +139,36 @@ void HtmlPage::foldedTable(const TextTable& table) {
   body_ += "</details>\n";
 }
 
-void HtmlPage::beginFigures() {
-  body_ += "<div class=\"figures\">\n";
+void HtmlPage::beginFigures(bool small) {
+  body_ += small ? "<div class=\"figures small\">\n" : "<div class=\"figures\">\n";
 }
 
 void HtmlPage::endFigures() {
   body_ += "</div>\n";
 }
 
-void HtmlPage::figure(const std::string& address, std::string_view caption) {
+void HtmlPage::figure(const std::string& address, std::string_view caption,
+                      const std::vector<LegendEntry>& legend) {
+  std::string colours;
+  for (const LegendEntry& entry : legend) {
+    colours += fmt::format("<span><i style=\"background:{}\"></i>{}</span>", escaped(entry.colour),
+                           escaped(entry.name));
+  }
+  if (!colours.empty()) colours = "<span class=\"legend\">" + colours + "</span>";
   body_ +=
-      fmt::format("<figure><img alt=\"{0}\" src=\"{1}\"><figcaption>{0}</figcaption></figure>\n",
-                  escaped(caption), address);
+      fmt::format("<figure><img alt=\"{0}\" src=\"{1}\"><figcaption>{0}{2}</figcaption></figure>\n",
+                  escaped(caption), address, colours);
 }
 
-void HtmlPage::svg(std::string_view document, std::string_view caption) {
-  figure(dataUri("image/svg+xml", document), caption);
+void HtmlPage::svg(std::string_view document, std::string_view caption,
+                   const std::vector<LegendEntry>& legend) {
+  figure(dataUri("image/svg+xml", document), caption, legend);
 }
 
-void HtmlPage::picture(std::string_view bytes, std::string_view caption) {
+void HtmlPage::picture(std::string_view bytes, std::string_view caption,
+                       const std::vector<LegendEntry>& legend) {
   const bool png = bytes.starts_with("\x89PNG");
-  figure(dataUri(png ? "image/png" : "image/jpeg", bytes), caption);
+  figure(dataUri(png ? "image/png" : "image/jpeg", bytes), caption, legend);
 }
 
 std::string HtmlPage::str() const {

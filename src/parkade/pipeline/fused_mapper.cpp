@@ -219,8 +219,8 @@ ParkingMap FusedMapper::map(const std::string& name) const {
   return map;
 }
 
-const LocalMap& FusedMapper::localMap() const {
-  return impl_->local;
+const LocalMap* FusedMapper::localMap() const {
+  return &impl_->local;
 }
 const LayeredGrid& FusedMapper::globalGrid() const {
   return impl_->global.grid();

@@ -115,7 +115,7 @@ class FusedMapper final : public SemanticMapper {
   /// anchor's pose holds all that was measured since.
   [[nodiscard]] Trajectory finalTrajectory() const override;
 
-  [[nodiscard]] const LocalMap& localMap() const;
+  [[nodiscard]] const LocalMap* localMap() const override;
   [[nodiscard]] const LayeredGrid& globalGrid() const;
   [[nodiscard]] const FusedMapperStatistics& statistics() const;
 

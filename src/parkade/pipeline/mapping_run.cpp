@@ -101,6 +101,7 @@ class MappingRun::Impl {
   struct Look {
     FrameSet frames;
     int number = 0;  // of the frame set
+    SE3 T_odom_vehicle;
     Result<SemanticFrame> frame = Error{"not looked yet"};
     std::future<void> done;
   };
@@ -232,9 +233,14 @@ void MappingRun::Impl::look(Estimation& work, const PoseEstimate& odometry_pose)
   auto item = std::make_unique<Look>();
   item->frames = std::move(work.packet.frames);
   item->number = work.number;
+  item->T_odom_vehicle = odometry_pose.T_odom_vehicle;
   item->done = look_pool_.submit([this, at = item.get()] {
     at->frame = front_end->look(at->frames);
     at->frames.images.clear();
+    if (!at->frame) return;
+    for (PipelineObserver* observer : observers) {
+      observer->onFeatures({front_end->picture(), *at->frame});
+    }
   });
   looks_.push_back(std::move(item));
 }
@@ -253,6 +259,9 @@ void MappingRun::Impl::enterLooks(int before) {
     const Clock::time_point begin = Clock::now();
     mapper->addSemantics(*item->frame);
     fuse_clock_.add(millisecondsBetween(begin, Clock::now()));
+    for (PipelineObserver* observer : observers) {
+      observer->onMap({*item->frame, item->T_odom_vehicle, mapper->localMap()});
+    }
   }
 }
 

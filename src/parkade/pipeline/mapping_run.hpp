@@ -62,6 +62,19 @@ struct PoseEvent {
   const VioStatistics& statistics;
 };
 
+/// What was seen on the ground in one frame set.
+struct FeaturesEvent {
+  const BevImage& picture;  ///< all cameras stitched
+  const SemanticFrame& features;
+};
+
+/// Features have entered the map.
+struct MapEvent {
+  const SemanticFrame& features;
+  const SE3& T_odom_vehicle;  ///< of their frame set
+  const LocalMap* local_map;  ///< in the odometry's frame; null where the method keeps none
+};
+
 /// What a run works with.
 enum class RunMethod {
   kVis,       ///< key points and the inertial unit
@@ -70,13 +83,16 @@ enum class RunMethod {
   kAvpSlam,   ///< wheels, gyroscope and semantic points by AVP-SLAM's scheme
 };
 
-/// Looks on while a run goes. The frame sets come in their order to each of the two; with two
-/// threads or more, onPose comes from another thread than onTracks.
+/// Looks on while a run goes. The frame sets come in their order to each of the four; with two
+/// threads or more, onPose and onMap come from another thread than onTracks, and onFeatures from a
+/// third one. The last two come only with methods that use semantics, and not for every frame set.
 class PipelineObserver {
  public:
   virtual ~PipelineObserver() = default;
   virtual void onTracks(const TracksEvent&) {}
   virtual void onPose(const PoseEvent&) {}
+  virtual void onFeatures(const FeaturesEvent&) {}
+  virtual void onMap(const MapEvent&) {}
 };
 
 /// What a run did, apart from its poses.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <deque>
@@ -194,6 +195,44 @@ TEST(MappingRun, SamePosesOnAnyNumberOfThreads) {
       EXPECT_EQ(poses[i].t_ns, reference[i].t_ns);
       EXPECT_EQ(poses[i].T_world_body.matrix(), reference[i].T_world_body.matrix()) << "pose " << i;
     }
+  }
+}
+
+class Onlooker : public PipelineObserver {
+ public:
+  void onFeatures(const FeaturesEvent& event) override {
+    EXPECT_EQ(event.picture.image.size(), event.features.labels.labels.size());
+    EXPECT_EQ(event.picture.t_ns, event.features.labels.t_ns);
+    seen.push_back(event.features.labels.t_ns);
+  }
+  void onMap(const MapEvent& event) override {
+    ASSERT_NE(event.local_map, nullptr);
+    entered.push_back(event.features.labels.t_ns);
+    places.push_back(event.T_odom_vehicle);
+  }
+  std::vector<TimeNs> seen;
+  std::vector<TimeNs> entered;
+  std::vector<SE3> places;
+};
+
+TEST(MappingRun, ShowsFeaturesAsTheyAreSeenAndAsTheyEnterTheMap) {
+  DotSource source;
+  auto run = MappingRun::create(source.rig, {}, 2, RunMethod::kFused);
+  ASSERT_TRUE(run.ok()) << run.error().message;
+  Onlooker onlooker;
+  (*run)->addObserver(&onlooker);
+  const Status status = (*run)->run(source);
+  ASSERT_TRUE(status.ok()) << status.error().message;
+  EXPECT_GT(onlooker.seen.size(), 3U);
+  EXPECT_TRUE(std::is_sorted(onlooker.seen.begin(), onlooker.seen.end()));
+  EXPECT_EQ(onlooker.entered, onlooker.seen);
+  for (std::size_t i = 0; i < onlooker.entered.size(); ++i) {
+    const Trajectory& odometry = (*run)->odometry();
+    const auto at = std::find_if(odometry.begin(), odometry.end(), [&](const StampedPose& pose) {
+      return pose.t_ns == onlooker.entered[i];
+    });
+    ASSERT_NE(at, odometry.end());
+    EXPECT_EQ(at->T_world_body.matrix(), onlooker.places[i].matrix());
   }
 }
 

@@ -40,6 +40,7 @@ struct SemanticFrontEnd::Impl {
   std::mutex views_mutex;
   std::deque<View> views;
   std::optional<PoseEstimate> last_look;
+  BevImage bev;
   StageClock stitch_clock{"bev"};
   StageClock segment_clock{"segment"};
   StageClock feature_clock{"features"};
@@ -103,7 +104,8 @@ Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames) {
     m.views.pop_front();
   }
   Clock::time_point begin = Clock::now();
-  const BevImage bev = m.stitcher.stitch(frames, view.floor.attitude);
+  m.bev = m.stitcher.stitch(frames, view.floor.attitude);
+  const BevImage& bev = m.bev;
   m.stitch_clock.add(since(begin));
   begin = Clock::now();
   Result<BevLabels> labels = m.network.segment(bev);
@@ -126,6 +128,10 @@ Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames) {
   frame.moving = m.tracker.update(found.agents, SE2::fromSE3(view.now.T_odom_vehicle), frames.t_ns);
   m.feature_clock.add(since(begin));
   return frame;
+}
+
+const BevImage& SemanticFrontEnd::picture() const {
+  return impl_->bev;
 }
 
 std::vector<StageTiming> SemanticFrontEnd::timings() const {

@@ -65,6 +65,9 @@ class SemanticFrontEnd {
   /// The features of the first frame set that is due.
   Result<SemanticFrame> look(const FrameSet& frames);
 
+  /// The stitched picture that the last look() saw.
+  [[nodiscard]] const BevImage& picture() const;
+
   [[nodiscard]] std::vector<StageTiming> timings() const;
 
  private:

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "parkade/mapping/local_map.hpp"
 #include "parkade/mapping/parking_map.hpp"
 #include "parkade/types/pose_estimate.hpp"
 #include "parkade/types/semantic_features.hpp"
@@ -35,6 +36,9 @@ class SemanticMapper {
   virtual void finish() = 0;
   /// The map as it is; finish() first, at the end of a run.
   [[nodiscard]] virtual ParkingMap map(const std::string& name) const = 0;
+  /// The layers around the car as a planner sees them, in the odometry's frame; null where the
+  /// method keeps none.
+  [[nodiscard]] virtual const LocalMap* localMap() const { return nullptr; }
   /// Every frame set since the start, with all that came after it.
   [[nodiscard]] virtual Trajectory finalTrajectory() const = 0;
 };
