@@ -73,6 +73,7 @@ class Remaining {
       }
     }
     if (!any) return "all done";
+    if (!known && seconds < 1.0) return "time left not known yet";
     const std::string least = known ? "" : "more than ";
     return seconds < 90.0 ? fmt::format("{}{:.0f} s left", least, seconds)
                           : fmt::format("{}{:.0f} min left", least, seconds / 60.0);

@@ -131,6 +131,11 @@ void addDrive(const std::vector<const JudgedRun*>& runs, bool in_full, HtmlPage&
     page.svg(barChart("Real-time factor (1: as fast as the car drove)", charts.speeds),
              "Processing time / recorded time");
   }
+  const JudgedRun* shown = shownRun(runs);
+  if (shown != nullptr) {
+    page.svg(timingChart(shown->folder),
+             fmt::format("Where the time of {} goes", shown->record.method));
+  }
   for (auto at = runs.rbegin(); at != runs.rend(); ++at) {  // the whole system comes last
     const JudgedRun* run = *at;
     if (run->record.failed) continue;
@@ -141,11 +146,6 @@ void addDrive(const std::vector<const JudgedRun*>& runs, bool in_full, HtmlPage&
                                   "wrong magenta; corner errors ten times as long, dark red",
                                   run->record.method));
     break;  // one is enough for a page
-  }
-  const JudgedRun* shown = shownRun(runs);
-  if (shown != nullptr) {
-    page.svg(timingChart(shown->folder),
-             fmt::format("Where the time of {} goes", shown->record.method));
   }
   page.endFigures();
   if (shown != nullptr && in_full) addShownRun(*shown, page);
