@@ -115,10 +115,15 @@ float Moment::floorShade(float x, float y) const {
 
 Eigen::Vector3f Moment::beamLux(const Eigen::Vector3f& p, const Eigen::Vector3f& n) const {
   float lux = 0.0F;
-  if ((reach_grid.at(p.x(), p.y()) & ReachGrid::kBeam) == 0) {
+  const unsigned reaching = reach_grid.at(p.x(), p.y()) & ReachGrid::kBeams;
+  if (reaching == 0) {
     return Eigen::Vector3f::Zero();
   }
-  for (const Beam& beam : beams) {
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if ((reaching & ReachGrid::bitOf(i)) == 0) {
+      continue;
+    }
+    const Beam& beam = beams[i];
     const Eigen::Vector3f d = p - beam.position;
     const float ahead = d.dot(beam.direction);
     const float d2 = d.squaredNorm();
@@ -216,7 +221,8 @@ void MomentMaker::markReach(Moment& moment) const {
       std::uint8_t& cell = grid.cells[static_cast<std::size_t>(y) * grid.nx + x];
       const Eigen::Vector2f center =
           grid.min + ReachGrid::kCell * Eigen::Vector2f(x + 0.5F, y + 0.5F);
-      for (const Beam& beam : moment.beams) {
+      for (std::size_t i = 0; i < moment.beams.size(); ++i) {
+        const Beam& beam = moment.beams[i];
         const Eigen::Vector2f d = center - beam.position.head<2>();
         const float distance = d.norm();
         if (distance > kBeamReach + kRadius) {
@@ -225,7 +231,7 @@ void MomentMaker::markReach(Moment& moment) const {
         const float wide = kBeamWedge + std::asin(std::min(1.0F, kRadius / distance));
         if (distance < 2.0F * kRadius ||
             d.dot(beam.direction.head<2>().normalized()) > distance * std::cos(wide)) {
-          cell |= ReachGrid::kBeam;
+          cell |= ReachGrid::bitOf(i);
         }
       }
       for (const PlacedObject& object : moment.objects) {

@@ -58,12 +58,17 @@ struct Beam {
 /// Where on the plan head lamps and shadows of objects may reach at all.
 struct ReachGrid {
   static constexpr float kCell = 1.0F;  ///< m
-  static constexpr std::uint8_t kBeam = 1;
-  static constexpr std::uint8_t kShadow = 2;
+  static constexpr std::uint8_t kShadow = 0x80;
+  static constexpr std::uint8_t kBeams =
+      0x7f;  ///< one bit per beam; the last for all from there on
+  /// The bit of a beam.
+  static constexpr std::uint8_t bitOf(std::size_t beam) {
+    return static_cast<std::uint8_t>(1U << (beam < 6 ? beam : 6));
+  }
   Eigen::Vector2f min = Eigen::Vector2f::Zero();
   int nx = 0;
   int ny = 0;
-  std::vector<std::uint8_t> cells;  ///< kBeam | kShadow
+  std::vector<std::uint8_t> cells;  ///< kBeams | kShadow
   /// What may reach a place; outside the grid everything may.
   [[nodiscard]] std::uint8_t at(float x, float y) const {
     const float fx = (x - min.x()) * (1.0F / kCell);
@@ -71,7 +76,7 @@ struct ReachGrid {
     const bool inside =
         fx >= 0.0F && fy >= 0.0F && fx < static_cast<float>(nx) && fy < static_cast<float>(ny);
     return inside ? cells[static_cast<std::size_t>(fy) * nx + static_cast<std::size_t>(fx)]
-                  : kBeam | kShadow;
+                  : kBeams | kShadow;
   }
 };
 

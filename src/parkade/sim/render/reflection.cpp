@@ -101,29 +101,34 @@ MirrorRay makeMirrorRay(const Surface& surface, const Eigen::Vector3f& direction
 
 namespace {
 
-/// Traces up to sixteen rays and calls use(ray, radiance) for each. Lamps are too small for a few
-/// rays: their image comes from their map, where a ray gets as far as they are high.
+/// Traces rays and calls use(ray, radiance) for each. Lamps are too small for a few rays: their
+/// image comes from their map, where a ray gets as far as they are high.
 template <class Use>
-void tracePacket(const FrameSetup& setup, RTCScene moving, float near_limit, const MirrorRay* rays,
-                 int lanes, const Use& use) {
+void traceRays(const FrameSetup& setup, RTCScene moving, float near_limit, const MirrorRay* rays,
+               int count, const Use& use) {
+  // In three passes, for what a hit's shading reads takes long to come from memory.
+  thread_local std::vector<SurfaceHit> hits;
+  hits.resize(static_cast<std::size_t>(count));
   RayPacket packet;
-  packet.clear(kMaskAll & ~kMaskLamp);
-  for (int k = 0; k < lanes; ++k) {
-    packet.set(k, rays[k].origin, rays[k].direction, kFar);
-    packet.rays.ray.tnear[k] = near_limit;
-  }
-  traceBoth(*setup.tracer, moving, packet, true);
-  std::array<SurfaceHit, kPacket> hits;
-  for (int k = 0; k < lanes; ++k) {
-    SurfaceHit& hit = hits[static_cast<std::size_t>(k)];
-    hit = hitOf(*setup.tracer, packet, k);
-    setup.shader->prefetchTriangle(hit);
+  for (int begin = 0; begin < count; begin += kPacket) {
+    const int lanes = std::min(kPacket, count - begin);
+    packet.clear(kMaskAll & ~kMaskLamp);
+    for (int k = 0; k < lanes; ++k) {
+      packet.set(k, rays[begin + k].origin, rays[begin + k].direction, kFar);
+      packet.rays.ray.tnear[k] = near_limit;
+    }
+    traceBoth(*setup.tracer, moving, packet, true);
+    for (int k = 0; k < lanes; ++k) {
+      SurfaceHit& hit = hits[static_cast<std::size_t>(begin + k)];
+      hit = hitOf(*setup.tracer, packet, k);
+      setup.shader->prefetchTriangle(hit);
+    }
   }
   for (const SurfaceHit& hit : hits) {
     setup.shader->prefetchVertices(hit);
   }
   const float lamps_height = setup.shader->lamps().height() - kLampRoom;
-  for (int k = 0; k < lanes; ++k) {
+  for (int k = 0; k < count; ++k) {
     const MirrorRay& ray = rays[k];
     const SurfaceHit& hit = hits[static_cast<std::size_t>(k)];
     if (hit.triangle == kNoTriangle) {
@@ -146,22 +151,17 @@ void tracePacket(const FrameSetup& setup, RTCScene moving, float near_limit, con
 
 void traceFloorMirror(const FrameSetup& setup, RTCScene moving, const MirrorRay* rays, int count,
                       ReflectionBuffer& floor) {
-  const auto use = [&](const MirrorRay& ray, const Eigen::Vector3f& radiance) {
-    floor.incoming[ray.pixel] << radiance.x(), radiance.y(), radiance.z(), 1.0F;
-  };
-  for (int begin = 0; begin < count; begin += kPacket) {
-    tracePacket(setup, moving, kFloorNear, rays + begin, std::min(kPacket, count - begin), use);
-  }
+  traceRays(setup, moving, kFloorNear, rays, count,
+            [&](const MirrorRay& ray, const Eigen::Vector3f& radiance) {
+              floor.incoming[ray.pixel] << radiance.x(), radiance.y(), radiance.z(), 1.0F;
+            });
 }
 
 void traceMirror(const FrameSetup& setup, const MirrorRay* rays, int count, Radiance& out) {
-  const auto use = [&](const MirrorRay& ray, const Eigen::Vector3f& radiance) {
-    out.pixels[ray.pixel] += ray.weight * radiance;
-  };
-  for (int begin = 0; begin < count; begin += kPacket) {
-    tracePacket(setup, setup.moment->scene.get(), kNear, rays + begin,
-                std::min(kPacket, count - begin), use);
-  }
+  traceRays(setup, setup.moment->scene.get(), kNear, rays, count,
+            [&](const MirrorRay& ray, const Eigen::Vector3f& radiance) {
+              out.pixels[ray.pixel] += ray.weight * radiance;
+            });
 }
 
 void addFloorReflections(ReflectionBuffer& floor, int threads, Radiance& out) {

@@ -250,8 +250,15 @@ void Shader::shade(const SurfaceHit* const* hits, const Eigen::Vector3f* const* 
   const RenderMesh& mesh = meshOf(hit, moment);
   const RenderTriangle& t = mesh.triangles[hit.triangle];
   const ShadeMaterial& material = materials_[t.material];
+  const bool static_floor = material.is_floor && hit.object < 0;  // has a map of its light
   Eigen::Vector3f lux;
-  surfaceAt(hit, t, moment, out.normal, lux);
+  if (static_floor) {
+    out.normal = (1.0F - hit.u - hit.v) * vertices_[t.v[0]].normal.head<3>() +
+                 hit.u * vertices_[t.v[1]].normal.head<3>() +
+                 hit.v * vertices_[t.v[2]].normal.head<3>();
+  } else {
+    surfaceAt(hit, t, moment, out.normal, lux);
+  }
   out.normal.normalize();
   if (out.normal.dot(*directions[0]) > 0.0F) {
     out.normal = -out.normal;

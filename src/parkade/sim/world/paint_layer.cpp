@@ -115,7 +115,13 @@ void PaintLayer::add(float x, float y, int level, PaintSample& sum) const {
   const int mask = (1 << bits) - 1;
   const Tile* tile = tileAt(ix >> bits, iy >> bits);
   const bool inside = (ix & mask) != mask && (iy & mask) != mask;
-  if (tile == nullptr && inside) return;
+  if (inside) {
+    if (tile == nullptr) return;
+    const Cell* row =
+        &tile->levels[level][static_cast<std::size_t>(((iy & mask) << bits) + (ix & mask))];
+    const Cell* next = row + (std::size_t{1} << bits);
+    if ((row[0].coverage | row[1].coverage | next[0].coverage | next[1].coverage) == 0) return;
+  }
   const float fx = u - static_cast<float>(ix);
   const float fy = v - static_cast<float>(iy);
   const float weights[4] = {(1.0F - fx) * (1.0F - fy), fx * (1.0F - fy), (1.0F - fx) * fy, fx * fy};
