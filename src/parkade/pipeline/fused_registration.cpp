@@ -59,7 +59,8 @@ void FusedMapper::Impl::tryStretch(const SemanticFrame& frame, const View& view,
   const Eigen::Matrix4d P = filter.relativeCovariance(stretch.anchor, view.anchor);
   const double sigma = largestSigma(P.topLeftCorner<2, 2>());
   // A submap of this passage knows nothing that the odometry did not see in the same pictures; its
-  // own errors, which come again from picture to picture, would pull. It is for odometry that fails.
+  // own errors, which come again from picture to picture, would pull. It is for odometry that
+  // fails.
   if (!revisit && sigma < options.submaps.sigma_m) return;
   ++(revisit ? statistics.revisits : statistics.registrations);
   Registration fit;
