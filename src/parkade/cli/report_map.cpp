@@ -186,16 +186,23 @@ void addLayerFigures(const ReportedRun& run, HtmlPage& page) {
       "Layer 1: parking lines", "Layer 2: availability of slots", "Layer 3: road markers",
       "Layer 4: zone markers, with pillars and walls", "Layer 5: dynamic objects at the end"};
   if (!run.map) return page.paragraph(withoutMap(run, "Layers"));
+  std::vector<std::string> without;
   page.beginFigures(true);
-  bool drawn = false;
   for (std::size_t i = 0; i < kNumGridLayers; ++i) {
-    const std::string bytes = pngOf(drawLayer(*run.map, kGridLayers[i], kMetresPerPx));
-    if (bytes.empty()) continue;
-    page.picture(bytes, kCaptions[i], entriesOf(layerLegend(kGridLayers[i])));
-    drawn = true;
+    const GridLayer layer = kGridLayers[i];
+    const bool slots = layer == GridLayer::kAvailability && !run.map->slots.empty();
+    const std::string bytes =
+        slots || run.map->grid.bounds(layer) ? pngOf(drawLayer(*run.map, layer, kMetresPerPx)) : "";
+    if (bytes.empty()) {
+      without.emplace_back(kCaptions[i]);
+    } else {
+      page.picture(bytes, kCaptions[i], entriesOf(layerLegend(layer)));
+    }
   }
   page.endFigures();
-  if (!drawn) page.paragraph(withoutMap(run, "Layers"));
+  for (const std::string& caption : without) {
+    page.paragraph(fmt::format("{}: the map of {} holds none.", caption, run.method));
+  }
 }
 
 void addLocalMapFigures(const ReportedRun& run, HtmlPage& page) {

@@ -163,9 +163,11 @@ Status writeRunReport(const std::string& run_folder, const std::string& page_pat
   page.svg(lineChart("Standard deviation of the heading, deg", "time, s",
                      {{"heading", health.over("sigma_yaw_deg"), false}}),
            "And of its heading");
-  page.svg(lineChart("Observations per frame set", "time, s",
-                     {{"tracks", health.over("tracks"), false}}),
-           "Tracks that the cameras follow");
+  if (reportNumber(metrics, "/mean_tracks") > 0.0) {
+    page.svg(lineChart("Observations per frame set", "time, s",
+                       {{"tracks", health.over("tracks"), false}}),
+             "Tracks that the cameras follow");
+  }
   page.svg(timingChart(run_folder), "Where the time goes");
   page.endFigures();
   return writeFileAtomic(page_path, page.str());
