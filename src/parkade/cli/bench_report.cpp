@@ -18,26 +18,9 @@
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
 #include "parkade/io/trajectory_io.hpp"
-#include "parkade/sim/world/garage_json.hpp"
-#include "parkade/sim/world/plan_image.hpp"
 
 namespace parkade::cli {
 namespace {
-
-std::optional<GroundPicture> planPicture(const std::string& sequence) {
-  const Result<sim::Garage> garage = sim::readGarageTruth(joinPath(sequence, "truth/garage.json"));
-  if (!garage) return std::nullopt;
-  constexpr double kPxPerMetre = 10.0;
-  constexpr double kMargin = 1.0;  // m, of drawPlan()
-  const cv::Mat plan = sim::drawPlan(*garage, kPxPerMetre);
-  ImageEncoding jpeg;
-  jpeg.jpeg_quality = 80;
-  const Result<std::string> bytes = encodeImage(plan, jpeg);
-  if (!bytes) return std::nullopt;
-  return GroundPicture{dataUri("image/jpeg", *bytes),
-                       {garage->min.x() - kMargin, garage->max.y() + kMargin},
-                       Eigen::Vector2d(plan.cols, plan.rows) / kPxPerMetre};
-}
 
 // The map of a run drawn on the truth, as PNG bytes; nothing where there is none.
 std::string mapErrors(const JudgedRun& run) {
@@ -123,7 +106,7 @@ void addDrive(const std::vector<const JudgedRun*>& runs, bool in_full, HtmlPage&
   }
   charts.ways.push_back({"truth", groundPoints(truth->poses), true});
   page.beginFigures();
-  page.svg(groundChart("Ways over the plan, m", planPicture(judged->sequence), charts.ways),
+  page.svg(groundChart("Ways over the plan, m", readPlanPicture(judged->sequence), charts.ways),
            "Estimated ways, first poses joined with the truth's (the paper's Fig. 9)");
   page.svg(lineChart("Position error, m", "time from the beginning, s", charts.errors),
            "Position error over time");

@@ -11,6 +11,7 @@
 #include "parkade/cli/command.hpp"
 #ifdef PARKADE_WITH_EVAL_MAP
 #include "parkade/cli/eval_map.hpp"
+#include "parkade/cli/map_truth_file.hpp"
 #endif
 #ifdef PARKADE_WITH_REPORT
 #include "parkade/cli/run_report.hpp"
@@ -165,8 +166,11 @@ Status evaluateFiles(const EvalArguments& arguments) {
     if (!runTrajectory(arguments.trajectory)) {
       return Error{fmt::format("{}: --report is about the folder of a run", arguments.trajectory)};
     }
-    const Status page = writeRunReport(arguments.trajectory, arguments.report,
-                                       ReportTruth{*evaluation, reference->poses});
+    ReportTruth truth{*evaluation, reference->poses, {}};
+#ifdef PARKADE_WITH_EVAL_MAP
+    truth.plan = readPlanPicture(arguments.reference);
+#endif
+    const Status page = writeRunReport(arguments.trajectory, arguments.report, truth);
     if (!page) return page;
   }
 #endif

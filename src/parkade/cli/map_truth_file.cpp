@@ -7,10 +7,13 @@
 #include <cmath>
 #include <filesystem>
 
+#include "parkade/eval/html_page.hpp"
 #include "parkade/io/csv.hpp"
 #include "parkade/io/file.hpp"
+#include "parkade/io/image_file.hpp"
 #include "parkade/io/trajectory_io.hpp"
 #include "parkade/sim/world/garage_json.hpp"
+#include "parkade/sim/world/plan_image.hpp"
 
 namespace parkade::cli {
 namespace {
@@ -165,6 +168,21 @@ Result<MapTruth> readMapTruth(const std::string& sequence) {
   if (!vehicles) return vehicles.error();
   truth.vehicles = std::move(vehicles).value();
   return truth;
+}
+
+std::optional<GroundPicture> readPlanPicture(const std::string& sequence) {
+  const Result<sim::Garage> garage = sim::readGarageTruth(joinPath(sequence, "truth/garage.json"));
+  if (!garage) return std::nullopt;
+  constexpr double kPxPerMetre = 10.0;
+  constexpr double kMargin = 1.0;  // m, of drawPlan()
+  const cv::Mat plan = sim::drawPlan(*garage, kPxPerMetre);
+  ImageEncoding jpeg;
+  jpeg.jpeg_quality = 80;
+  const Result<std::string> bytes = encodeImage(plan, jpeg);
+  if (!bytes) return std::nullopt;
+  return GroundPicture{dataUri("image/jpeg", *bytes),
+                       {garage->min.x() - kMargin, garage->max.y() + kMargin},
+                       Eigen::Vector2d(plan.cols, plan.rows) / kPxPerMetre};
 }
 
 }  // namespace parkade::cli

@@ -103,7 +103,7 @@ void addErrors(const ReportTruth& truth, HtmlPage& page) {
     heading.emplace_back(t, e.absolute.heading_deg[i]);
   }
   page.beginFigures();
-  page.svg(groundChart("Way over the ground, m", std::nullopt,
+  page.svg(groundChart(truth.plan ? "Way over the plan, m" : "Way over the ground, m", truth.plan,
                        {{"estimate", groundPoints(e.estimate), false},
                         {"truth", groundPoints(truth.reference), true}}),
            "The estimate on the truth");

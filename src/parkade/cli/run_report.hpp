@@ -6,6 +6,7 @@
 #include <string>
 
 #include "parkade/core/result.hpp"
+#include "parkade/eval/charts.hpp"
 #include "parkade/eval/evaluation.hpp"
 
 namespace parkade::cli {
@@ -14,6 +15,7 @@ namespace parkade::cli {
 struct ReportTruth {
   Evaluation evaluation;  ///< of the run's trajectory
   Trajectory reference;
+  std::optional<GroundPicture> plan;  ///< of the garage, in the reference's frame
 };
 
 /// How long the stages of a run took, as bars.
