@@ -20,8 +20,7 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-Polygon counterClockwise(const std::array<Eigen::Vector2d, 4>& corners) {
-  Polygon polygon(corners.begin(), corners.end());
+Polygon counterClockwise(Polygon polygon) {
   if (signedArea(polygon) < 0.0) std::reverse(polygon.begin(), polygon.end());
   return polygon;
 }
@@ -122,8 +121,8 @@ double signedArea(const Polygon& polygon) {
   return 0.5 * twice;
 }
 
-double overlapShare(const std::array<Eigen::Vector2d, 4>& a,
-                    const std::array<Eigen::Vector2d, 4>& b) {
+double overlapShare(const Polygon& a, const Polygon& b) {
+  if (a.size() < 3 || b.size() < 3) return 0.0;
   const Polygon other = counterClockwise(b);
   Polygon common = counterClockwise(a);
   const double smaller = std::min(signedArea(common), signedArea(other));
@@ -131,6 +130,11 @@ double overlapShare(const std::array<Eigen::Vector2d, 4>& a,
     common = clip(common, other[i], other[(i + 1) % other.size()]);
   }
   return smaller > 0.0 ? std::clamp(signedArea(common) / smaller, 0.0, 1.0) : 0.0;
+}
+
+double overlapShare(const std::array<Eigen::Vector2d, 4>& a,
+                    const std::array<Eigen::Vector2d, 4>& b) {
+  return overlapShare(Polygon(a.begin(), a.end()), Polygon(b.begin(), b.end()));
 }
 
 std::vector<std::string> findFaults(const ParkingMap& map) {

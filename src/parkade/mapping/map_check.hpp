@@ -17,6 +17,8 @@ std::vector<std::string> findFaults(const ParkingMap& map);
 /// Share of the smaller one's area that two convex quadrilaterals have in common, 0 to 1.
 double overlapShare(const std::array<Eigen::Vector2d, 4>& a,
                     const std::array<Eigen::Vector2d, 4>& b);
+/// The same of convex polygons; 0 where one has fewer than 3 corners.
+double overlapShare(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vector2d>& b);
 
 /// Signed area, m^2: positive where the corners run counter-clockwise.
 double signedArea(const std::vector<Eigen::Vector2d>& polygon);

@@ -7,6 +7,9 @@
 #include <cmath>
 #include <limits>
 
+#include "parkade/mapping/frame_evidence.hpp"
+#include "parkade/mapping/map_check.hpp"
+
 namespace parkade {
 namespace {
 
@@ -34,7 +37,8 @@ void ObjectRegistry::fuse(Track& track, const Eigen::Vector3d& p,
 }
 
 void ObjectRegistry::update(const std::vector<ObjectObservation>& observations,
-                            const SE2& T_world_vehicle, double z_vehicle, std::int64_t anchor) {
+                            const SE2& T_world_vehicle, double z_vehicle, std::int64_t anchor,
+                            const BevLabels* labels) {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   R.topLeftCorner<2, 2>() = T_world_vehicle.rotationMatrix();
   const double floor2 = options_.position_floor_m * options_.position_floor_m;
@@ -84,6 +88,29 @@ void ObjectRegistry::update(const std::vector<ObjectObservation>& observations,
     }
     ++track.observations;
   }
+  if (labels != nullptr) look(*labels, T_world_vehicle, used);
+}
+
+void ObjectRegistry::look(const BevLabels& labels, const SE2& T_world_vehicle,
+                          const std::vector<bool>& observed) {
+  sighted_ = true;
+  constexpr double kRange = 8.5;  // m
+  constexpr double kMostHidden = 0.1;
+  const LabelSight sight(labels, kRange);
+  const SE2 T_vehicle_world = T_world_vehicle.inverse();
+  std::vector<Eigen::Vector2d> outline;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    Track& track = tracks_[i];
+    if (!sight.reaches(T_vehicle_world * track.position.head<2>())) continue;
+    outline.clear();
+    for (const Eigen::Vector2d& p : track.outline) outline.push_back(T_vehicle_world * p);
+    const AreaShares shares = sight.of(outline, track.semantic_class);
+    if (shares.unseen + shares.covered > kMostHidden) continue;
+    ++(i >= observed.size() || observed[i] ? track.existence.hits : track.existence.misses);
+    track.votes.own += shares.own;
+    track.votes.rival += shares.rival;
+    track.votes.floor += shares.floor;
+  }
 }
 
 void ObjectRegistry::mergeDuplicates() {
@@ -101,6 +128,10 @@ void ObjectRegistry::mergeDuplicates() {
       a.heading += b.heading;
       a.texts.add(b.texts);
       a.observations += b.observations;
+      a.existence.add(b.existence);
+      a.votes.own += b.votes.own;
+      a.votes.rival += b.votes.rival;
+      a.votes.floor += b.votes.floor;
       if (b.outline_confidence > a.outline_confidence) {
         a.outline = b.outline;
         a.outline_confidence = b.outline_confidence;
@@ -123,10 +154,39 @@ void ObjectRegistry::moveWithAnchors(const std::function<SE2(std::int64_t)>& cor
   mergeDuplicates();
 }
 
+double ObjectRegistry::existence(const Track& track) const {
+  const bool upright = roleOf(track.semantic_class) == LayerRole::kStructure;
+  return track.existence.logOdds(upright ? options_.upright : options_.paint);
+}
+
+bool ObjectRegistry::exists(const Track& track) const {
+  if (track.observations < options_.min_observations) return false;
+  if (!sighted_ || track.outline.empty()) return true;
+  const double looks_alike = track.votes.own + track.votes.rival;
+  return existence(track) > 0.0 && track.votes.own >= options_.min_own_share * looks_alike;
+}
+
 std::vector<MapObject> ObjectRegistry::objects() const {
-  std::vector<MapObject> result;
+  std::vector<const Track*> order;
   for (const Track& track : tracks_) {
-    if (track.observations < options_.min_observations) continue;
+    if (exists(track)) order.push_back(&track);
+  }
+  std::stable_sort(order.begin(), order.end(), [this](const Track* a, const Track* b) {
+    return existence(*a) > existence(*b);
+  });
+  std::vector<const Track*> told;
+  for (const Track* track : order) {
+    const bool taken = std::any_of(told.begin(), told.end(), [&](const Track* other) {
+      return other->semantic_class == track->semantic_class &&
+             overlapShare(other->outline, track->outline) > options_.duplicate_overlap;
+    });
+    if (!taken) told.push_back(track);
+  }
+  std::stable_sort(told.begin(), told.end(),
+                   [](const Track* a, const Track* b) { return a->id < b->id; });
+  std::vector<MapObject> result;
+  for (const Track* one : told) {
+    const Track& track = *one;
     MapObject object;
     object.id = track.id;
     object.semantic_class = track.semantic_class;

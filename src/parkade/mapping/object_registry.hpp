@@ -9,6 +9,8 @@
 #include "parkade/core/options.hpp"
 #include "parkade/core/time.hpp"
 #include "parkade/geometry/se2.hpp"
+#include "parkade/mapping/existence.hpp"
+#include "parkade/mapping/label_sight.hpp"
 #include "parkade/mapping/parking_map.hpp"
 #include "parkade/mapping/votes.hpp"
 
@@ -19,6 +21,10 @@ struct ObjectRegistryOptions {
   double max_distance_m = 1.0;
   double position_floor_m = 0.03;
   int min_observations = 3;
+  double min_own_share = 0.45;
+  double duplicate_overlap = 0.3;
+  ExistenceOptions paint{0.4, 0.1, 0.1};
+  ExistenceOptions upright{0.6, 0.25, 0.1};  // smears beside pillars look alike again and again
 
   void visit(OptionVisitor& v) {
     v.field("association_sigma_m", association_sigma_m, "m",
@@ -29,6 +35,14 @@ struct ObjectRegistryOptions {
             1e-4, 1.0);
     v.field("min_observations", min_observations, "count", "Objects seen less often are not told.",
             1, 1000);
+    v.field("min_own_share", min_own_share, "ratio",
+            "Of the pixels at an object's place that are labelled as its class or as one that has "
+            "its looks, so many must be of its class.",
+            0.0, 1.0);
+    v.field("duplicate_overlap", duplicate_overlap, "ratio",
+            "Of two of a class that share more of the smaller one's area, one is told.", 0.05, 1.0);
+    v.group("paint", paint);
+    v.group("upright", upright);
   }
 };
 
@@ -38,11 +52,14 @@ class ObjectRegistry {
  public:
   explicit ObjectRegistry(const ObjectRegistryOptions& options) : options_(options) {}
 
+  /// labels: of the picture that the observations come from. Where given, objects in plain sight
+  /// there that were not observed lose evidence, and their places' labels vote on them.
   void update(const std::vector<ObjectObservation>& observations, const SE2& T_world_vehicle,
-              double z_vehicle, std::int64_t anchor);
+              double z_vehicle, std::int64_t anchor, const BevLabels* labels = nullptr);
   /// As SlotRegistry's.
   void moveWithAnchors(const std::function<SE2(std::int64_t)>& correction);
-  /// Those seen often enough, ordered by id.
+  /// Those that exist by what plain sight shows, none on another of its class; ordered by id.
+  /// Without labels, and where there is no outline: those observed often enough.
   [[nodiscard]] std::vector<MapObject> objects() const;
 
  private:
@@ -57,7 +74,13 @@ class ObjectRegistry {
     std::vector<Eigen::Vector2d> outline;
     double outline_confidence = 0.0;
     std::int64_t observations = 0;
+    Existence existence;
+    AreaShares votes;  ///< sum of what the labels showed of its place in plain sight
   };
+  void look(const BevLabels& labels, const SE2& T_world_vehicle, const std::vector<bool>& observed);
+  /// Log-odds.
+  [[nodiscard]] double existence(const Track& track) const;
+  [[nodiscard]] bool exists(const Track& track) const;
   [[nodiscard]] bool compatible(const Track& a, SemanticClass c, const Eigen::Vector3d& p,
                                 double heading, bool has_heading) const;
   static void fuse(Track& track, const Eigen::Vector3d& p, const Eigen::Matrix3d& covariance);
@@ -66,6 +89,7 @@ class ObjectRegistry {
   ObjectRegistryOptions options_;
   std::vector<Track> tracks_;
   std::int64_t next_id_ = 1;
+  bool sighted_ = false;  ///< labels were given
 };
 
 }  // namespace parkade

@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "parkade/mapping/label_sight.hpp"
 #include "parkade/mapping/map_check.hpp"
 #include "parkade/mapping/object_registry.hpp"
 #include "parkade/mapping/slot_registry.hpp"
@@ -193,6 +194,92 @@ TEST(ObjectRegistry, FindsArrowsPillarsAndMarkersOnce) {
     }
   }
   EXPECT_GT(objects.size(), 20U);
+}
+
+// A floor with a 1 m x 0.5 m stop line at (4, 0), labelled for a part of its width.
+BevLabels stopLineLabels(double share) {
+  BevLabels labels;
+  labels.labels = cv::Mat(labels.geometry.height_px, labels.geometry.width_px, CV_8UC1,
+                          cv::Scalar(static_cast<int>(SemanticClass::kFloor)));
+  for (int v = 0; v < labels.labels.rows; ++v) {
+    for (int u = 0; u < labels.labels.cols; ++u) {
+      const Eigen::Vector2d p = labels.geometry.toGround({u, v});
+      if (std::abs(p.x() - 4.0) > 0.25 || std::abs(p.y()) > 0.5) continue;
+      const bool own = p.y() < -0.5 + share;
+      labels.labels.at<std::uint8_t>(v, u) =
+          static_cast<std::uint8_t>(own ? SemanticClass::kStopLine : SemanticClass::kLaneLine);
+    }
+  }
+  return labels;
+}
+
+ObjectObservation stopLine(double x) {
+  ObjectObservation o;
+  o.semantic_class = SemanticClass::kStopLine;
+  o.position = {x, 0.0, 0.0};
+  o.covariance = 4e-4 * Eigen::Matrix3d::Identity();
+  o.confidence = 0.9;
+  o.outline = {{x - 0.25, -0.5}, {x + 0.25, -0.5}, {x + 0.25, 0.5}, {x - 0.25, 0.5}};
+  return o;
+}
+
+// Objects told after 40 pictures, of which every n-th gave the observation.
+std::size_t toldAfter(int every, const BevLabels& labels, double x = 4.0) {
+  ObjectRegistry registry({});
+  for (int k = 0; k < 40; ++k) {
+    std::vector<ObjectObservation> seen;
+    if (k % every == 0) seen.push_back(stopLine(x));
+    registry.update(seen, SE2(), 0.0, 0, &labels);
+  }
+  return registry.objects().size();
+}
+
+TEST(ObjectRegistry, ToldWhereAllPicturesOfThePlaceAgree) {
+  EXPECT_EQ(toldAfter(2, stopLineLabels(1.0)), 1U);
+  EXPECT_EQ(toldAfter(8, stopLineLabels(1.0)), 0U);       // missed in plain sight
+  EXPECT_EQ(toldAfter(2, stopLineLabels(0.2)), 0U);       // by its labels another kind of paint
+  EXPECT_EQ(toldAfter(2, stopLineLabels(1.0), 9.0), 0U);  // never in plain sight
+}
+
+TEST(ObjectRegistry, HiddenObjectsAreNotMissed) {
+  const BevLabels plain = stopLineLabels(1.0);
+  BevLabels hidden = plain;
+  hidden.labels = plain.labels.clone();
+  hidden.labels.setTo(static_cast<int>(SemanticClass::kVehicle));
+  ObjectRegistry registry({});
+  for (int k = 0; k < 4; ++k) registry.update({stopLine(4.0)}, SE2(), 0.0, 0, &plain);
+  for (int k = 0; k < 100; ++k) registry.update({}, SE2(), 0.0, 0, &hidden);
+  EXPECT_EQ(registry.objects().size(), 1U);
+  for (int k = 0; k < 100; ++k) registry.update({}, SE2(), 0.0, 0, &plain);
+  EXPECT_TRUE(registry.objects().empty());
+}
+
+TEST(ObjectRegistry, OfTwoOnOnePlaceTheBetterSeenIsTold) {
+  const BevLabels labels = stopLineLabels(1.0);
+  ObjectRegistry registry({});
+  for (int k = 0; k < 12; ++k) {
+    std::vector<ObjectObservation> seen = {stopLine(4.0)};
+    if (k % 2 == 0) seen.push_back(stopLine(4.2));
+    registry.update(seen, SE2(), 0.0, 0, &labels);
+  }
+  const std::vector<MapObject> objects = registry.objects();
+  ASSERT_EQ(objects.size(), 1U);
+  EXPECT_NEAR(objects[0].position.x(), 4.0, 0.05);
+}
+
+TEST(LabelSight, SharesOfAnArea) {
+  const BevLabels labels = stopLineLabels(0.5);
+  const LabelSight sight(labels, 8.5);
+  const auto area = [](double x0, double x1) {
+    return std::vector<Eigen::Vector2d>{{x0, -0.5}, {x1, -0.5}, {x1, 0.5}, {x0, 0.5}};
+  };
+  const AreaShares inside = sight.of(area(3.75, 4.25), SemanticClass::kStopLine);
+  EXPECT_NEAR(inside.own, 0.5, 0.08);
+  EXPECT_NEAR(inside.rival, 0.5, 0.08);
+  EXPECT_NEAR(inside.unseen, 0.0, 1e-9);
+  EXPECT_NEAR(sight.of(area(2.0, 3.0), SemanticClass::kStopLine).floor, 1.0, 1e-9);
+  EXPECT_NEAR(sight.of(area(7.2, 8.2), SemanticClass::kStopLine).unseen, 0.5, 0.1);  // past 7.68 m
+  EXPECT_NEAR(sight.of({}, SemanticClass::kStopLine).unseen, 1.0, 1e-9);
 }
 
 TEST(Votes, GateIsTheChiSquareOfFourDegrees) {

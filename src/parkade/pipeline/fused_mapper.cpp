@@ -128,7 +128,8 @@ void FusedMapper::Impl::enterMaps(const SemanticFrame& frame, const View& view) 
     global.update(labels, t_ns, open().anchor, between(open().anchor, view));
   }
   slots.update(frame.slots, t_ns, pose, open().anchor);
-  objects.update(frame.objects, pose, filter.anchor(view.anchor).z, open().anchor);
+  objects.update(frame.objects, pose, filter.anchor(view.anchor).z, open().anchor,
+                 frame.labels.labels.empty() ? nullptr : &frame.labels);
 }
 
 FusedMapper::FusedMapper(const FusedMapperOptions& options, std::vector<Eigen::Vector3d> viewpoints)

@@ -87,6 +87,9 @@ std::vector<MarkingShape> arrowShapes() {
       if (bits == 7) shapes.push_back(arrow(style, straight, left, right, 0.12));
     }
   }
+  for (const double width : {0.06, 0.11, 0.18}) {
+    shapes.push_back({"", {box(0.0, -0.5 * width, 1.0, 0.5 * width)}});
+  }
   return shapes;
 }
 

@@ -111,6 +111,7 @@ bool asArrow(const MarkingPiece& piece, double pixel, const std::vector<MarkingS
   const Eigen::Vector2d ahead(std::cos(fit.heading), std::sin(fit.heading));
   const Eigen::Vector2d left(-ahead.y(), ahead.x());
   const MarkingShape& shape = shapes[static_cast<std::size_t>(fit.shape)];
+  if (shape.meaning().empty()) return false;  // a plain bar: the dash of a line
   // Its ends from the paint, where that ends near the shape's: proportions differ.
   double back = std::numeric_limits<double>::max();
   double front = -back;

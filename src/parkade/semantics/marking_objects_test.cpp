@@ -89,6 +89,32 @@ TEST(MarkingObjects, ArrowsTellMeaningPlaceAndHeading) {
   }
 }
 
+TEST(MarkingObjects, PaintThatHangsTogetherIsOneThing) {
+  const MarkingExtractor extractor({});
+  const SE2 place(0.4, {4.5, 1.0});
+  const auto found = [&](double share, const std::vector<Polygon>& paint) {
+    Floor floor;
+    for (const Polygon& p : paint) floor.paint(SemanticClass::kLaneLine, p, place);
+    const SE2 back = place.inverse();
+    for (int v = 0; v < floor.labels.labels.rows; ++v) {
+      for (int u = 0; u < floor.labels.labels.cols; ++u) {
+        std::uint8_t& label = floor.labels.labels.at<std::uint8_t>(v, u);
+        const double x = (back * floor.labels.geometry.toGround({u, v})).x();
+        if (label != 1 && x > 1.2 - 2.4 * share) label = static_cast<std::uint8_t>(4);
+      }
+    }
+    return extractor.extract(floor.labels, floor.views, kAttitudeSigma);
+  };
+  // Its shaft taken for a line's dash, an arrow is found whole; a dash with an arrow's end is none.
+  const auto arrows = found(0.5, arrow("straight", 2.4));
+  ASSERT_EQ(arrows.size(), 1U);
+  EXPECT_LT((arrows[0].position.head<2>() - place.translation()).norm(), 0.1);
+  EXPECT_EQ(arrows[0].text, "straight");
+  EXPECT_TRUE(found(0.3, {box(-1.2, -0.08, 1.2, 0.08)}).empty());
+  // And a plain bar is no arrow, whatever its labels say.
+  EXPECT_TRUE(found(1.0, {box(-1.2, -0.08, 1.2, 0.08)}).empty());
+}
+
 TEST(MarkingObjects, WornArrowsAreStillRead) {
   const MarkingExtractor extractor({});
   Random random(3);

@@ -35,9 +35,43 @@ cv::Mat hiddenMask(const cv::Mat& labels, int reach) {
   return hidden;
 }
 
+// Labels waver between an arrow and the dash of a lane line. Paint that hangs together is one
+// thing: all of it an arrow where enough is labelled so, else none.
+cv::Mat arrowPaint(const BevLabels& bev) {
+  const cv::Mat arrow = bev.labels == static_cast<int>(SemanticClass::kArrow);
+  const cv::Rect box = cv::boundingRect(arrow);
+  cv::Mat paint = arrow | (bev.labels == static_cast<int>(SemanticClass::kLaneLine));
+  cv::Mat piece_of;
+  cv::Mat stats;
+  cv::Mat centers;
+  const int count = cv::connectedComponentsWithStats(paint, piece_of, stats, centers, 8, CV_32S);
+  std::vector<int> own(static_cast<std::size_t>(count), 0);
+  for (int v = box.y; v < box.y + box.height; ++v) {
+    for (int u = box.x; u < box.x + box.width; ++u) {
+      if (arrow.at<std::uint8_t>(v, u) != 0)
+        ++own[static_cast<std::size_t>(piece_of.at<int>(v, u))];
+    }
+  }
+  constexpr double kEnough = 0.4;
+  std::vector<std::uint8_t> kept(own.size(), 0);
+  for (std::size_t i = 1; i < own.size(); ++i) {
+    const int all = stats.at<int>(static_cast<int>(i), cv::CC_STAT_AREA);
+    if (own[i] > 0 && own[i] >= kEnough * all) kept[i] = 255;
+  }
+  for (int v = 0; v < paint.rows; ++v) {
+    const int* index = piece_of.ptr<int>(v);
+    std::uint8_t* pixel = paint.ptr<std::uint8_t>(v);
+    for (int u = 0; u < paint.cols; ++u) pixel[u] = kept[static_cast<std::size_t>(index[u])];
+  }
+  return paint;
+}
+
 void splitClass(const BevLabels& bev, const cv::Mat& hidden, const ClassGap& entry,
                 int min_confidence, int min_pixels, std::vector<MarkingPiece>& out) {
-  const cv::Mat paint = bev.labels == static_cast<int>(entry.semantic_class);
+  const cv::Mat paint = entry.semantic_class == SemanticClass::kArrow
+                            ? arrowPaint(bev)
+                            : cv::Mat(bev.labels == static_cast<int>(entry.semantic_class));
+  if (entry.semantic_class == SemanticClass::kArrow && cv::countNonZero(paint) < min_pixels) return;
   // Joined over gaps in a bounding box only: most classes cover little of a picture.
   const cv::Rect box = cv::boundingRect(paint);
   const int reach =
