@@ -15,6 +15,10 @@ namespace {
 
 constexpr double kGate = 16.27;  // 99.9 % of chi-square, 3 degrees
 
+bool isUpright(SemanticClass c) {
+  return roleOf(c) == LayerRole::kStructure;
+}
+
 }  // namespace
 
 bool ObjectRegistry::compatible(const Track& track, SemanticClass c, const Eigen::Vector3d& p,
@@ -106,7 +110,13 @@ void ObjectRegistry::look(const BevLabels& labels, const SE2& T_world_vehicle,
     for (const Eigen::Vector2d& p : track.outline) outline.push_back(T_vehicle_world * p);
     const AreaShares shares = sight.of(outline, track.semantic_class);
     if (shares.unseen + shares.covered > kMostHidden) continue;
-    ++(i >= observed.size() || observed[i] ? track.existence.hits : track.existence.misses);
+    // Something upright that is labelled there is not missed where its foot could not be measured.
+    const bool labelled = isUpright(track.semantic_class) && shares.own > 0.5;
+    if (i >= observed.size() || observed[i]) {
+      ++track.existence.hits;
+    } else if (!labelled) {
+      ++track.existence.misses;
+    }
     track.votes.own += shares.own;
     track.votes.rival += shares.rival;
     track.votes.floor += shares.floor;
@@ -155,8 +165,8 @@ void ObjectRegistry::moveWithAnchors(const std::function<SE2(std::int64_t)>& cor
 }
 
 double ObjectRegistry::existence(const Track& track) const {
-  const bool upright = roleOf(track.semantic_class) == LayerRole::kStructure;
-  return track.existence.logOdds(upright ? options_.upright : options_.paint);
+  return track.existence.logOdds(isUpright(track.semantic_class) ? options_.upright
+                                                                 : options_.paint);
 }
 
 bool ObjectRegistry::exists(const Track& track) const {
@@ -176,9 +186,14 @@ std::vector<MapObject> ObjectRegistry::objects() const {
   });
   std::vector<const Track*> told;
   for (const Track* track : order) {
+    // Pillars stand farther apart; what lies that near behind one is its smear.
+    constexpr double kPillarSpacing = 2.0;  // m
     const bool taken = std::any_of(told.begin(), told.end(), [&](const Track* other) {
-      return other->semantic_class == track->semantic_class &&
-             overlapShare(other->outline, track->outline) > options_.duplicate_overlap;
+      if (other->semantic_class != track->semantic_class) return false;
+      const double distance = (other->position - track->position).head<2>().norm();
+      return overlapShare(other->outline, track->outline) > options_.duplicate_overlap ||
+             (track->semantic_class == SemanticClass::kPillar && sighted_ &&
+              distance < kPillarSpacing);
     });
     if (!taken) told.push_back(track);
   }
