@@ -164,6 +164,40 @@ TEST(SlotRegistry, FalseAlarmsAreNotTold) {
   EXPECT_TRUE(registry.slots(0).empty());
 }
 
+TEST(SlotRegistry, NoSlotWhereTheCarDroveThroughOrDriversMarksLie) {
+  SlotObservation o;
+  o.corners = {Eigen::Vector2d(2, 2), Eigen::Vector2d(4.5, 2), Eigen::Vector2d(4.5, 7),
+               Eigen::Vector2d(2, 7)};
+  o.entrance_covariance = 1e-3 * Eigen::Matrix4d::Identity();
+  o.confidence = 0.9;
+  const auto told = [&](const SE2& from, const SE2& to, const std::vector<MapObject>& objects) {
+    SlotRegistry registry({});
+    for (int k = 0; k <= 40; ++k) {
+      const SE2 pose(from.angle(),
+                     from.translation() + k / 40.0 * (to.translation() - from.translation()));
+      SlotObservation seen = o;
+      for (Eigen::Vector2d& p : seen.corners) p = pose.inverse() * p;
+      registry.update({seen}, k * kTick, pose, 0);
+    }
+    return registry.slots(0, objects).size();
+  };
+  const SE2 aisle_from(0.0, {-2.0, 0.0});
+  const SE2 aisle_to(0.0, {8.0, 0.0});
+  EXPECT_EQ(told(aisle_from, aisle_to, {}), 1U);
+  EXPECT_EQ(told(SE2(M_PI_2, {3.25, 0.0}), SE2(M_PI_2, {3.25, 4.0}), {}), 1U);  // parks in it
+  EXPECT_EQ(told(SE2(0.0, {-2.0, 4.0}), SE2(0.0, {8.0, 4.0}), {}), 0U);         // across
+  EXPECT_EQ(told(SE2(M_PI_2, {3.25, 0.0}), SE2(M_PI_2, {3.25, 9.0}), {}), 0U);  // out of its rear
+  MapObject arrow;
+  arrow.semantic_class = SemanticClass::kArrow;
+  arrow.position = {3.0, 4.0, 0.0};
+  EXPECT_EQ(told(aisle_from, aisle_to, {arrow}), 0U);
+  arrow.position.y() = 1.0;
+  EXPECT_EQ(told(aisle_from, aisle_to, {arrow}), 1U);
+  arrow.position.y() = 4.0;
+  arrow.semantic_class = SemanticClass::kPaintedNumber;
+  EXPECT_EQ(told(aisle_from, aisle_to, {arrow}), 1U);
+}
+
 TEST(ObjectRegistry, FindsArrowsPillarsAndMarkersOnce) {
   const Plan plan = makePlan(2, 60.0, 0.6, 11);
   ObserverNoise noise = usualNoise();

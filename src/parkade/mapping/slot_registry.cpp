@@ -7,88 +7,29 @@
 #include <cmath>
 
 #include "parkade/mapping/map_check.hpp"
-#include "parkade/mapping/votes.hpp"
+#include "parkade/mapping/slot_plausibility.hpp"
+#include "parkade/mapping/slot_track.hpp"
 
 namespace parkade {
-namespace {
 
-using Vector4 = Eigen::Vector4d;
-using Matrix4 = Eigen::Matrix4d;
-using Corners = std::array<Eigen::Vector2d, 4>;
-
-struct Track {
-  std::int64_t id = 0;
-  std::int64_t anchor = 0;
-  Vector4 entrance = Vector4::Zero();  // left x y, right x y
-  Matrix4 covariance = Matrix4::Zero();
-  Eigen::Vector2d rear_left = Eigen::Vector2d::Zero();   // from the entrance's left corner
-  Eigen::Vector2d rear_right = Eigen::Vector2d::Zero();  // from its right corner
-  double rear_weight = 0.0;
-  double log_odds_free = 0.0;
-  TimeNs availability_ns = 0;
-  double confidence = 0.0;  // sum
-  std::int64_t observations = 0;
-  std::int64_t misses = 0;
-  TimeNs last_seen_ns = 0;
-  Votes numbers;
-  std::array<double, 3> shapes{};
-
-  [[nodiscard]] Corners corners() const {
-    const Eigen::Vector2d left = entrance.head<2>();
-    const Eigen::Vector2d right = entrance.tail<2>();
-    return {left, right, right + rear_right, left + rear_left};
-  }
-  [[nodiscard]] Eigen::Vector2d middle() const {
-    return 0.5 * (entrance.head<2>() + entrance.tail<2>());
-  }
-  [[nodiscard]] double width() const { return (entrance.tail<2>() - entrance.head<2>()).norm(); }
-};
-
-// An observation in the world.
-struct Seen {
-  Vector4 entrance = Vector4::Zero();
-  Matrix4 covariance = Matrix4::Zero();
-  Eigen::Vector2d rear_left = Eigen::Vector2d::Zero();
-  Eigen::Vector2d rear_right = Eigen::Vector2d::Zero();
-  const SlotObservation* source = nullptr;
-};
-
-double logOdds(double p) {
-  const double inside = std::clamp(p, 0.02, 0.98);
-  return std::log(inside / (1.0 - inside));
-}
-
-Seen toWorld(const SlotObservation& o, const SE2& T, double floor) {
-  Seen seen;
-  seen.source = &o;
-  const Eigen::Vector2d left = T * o.corners[0];
-  const Eigen::Vector2d right = T * o.corners[1];
-  seen.entrance << left, right;
-  seen.rear_right = T * o.corners[2] - right;
-  seen.rear_left = T * o.corners[3] - left;
-  Matrix4 R = Matrix4::Zero();
-  R.topLeftCorner<2, 2>() = T.rotationMatrix();
-  R.bottomRightCorner<2, 2>() = T.rotationMatrix();
-  seen.covariance = R * o.entrance_covariance * R.transpose() + floor * floor * Matrix4::Identity();
-  return seen;
-}
-
-// Same direction to within 25 degrees and middles nearer than half a width: no neighbour does that.
-bool mayBeSame(const Track& track, const Seen& seen) {
-  const Eigen::Vector2d a = track.entrance.tail<2>() - track.entrance.head<2>();
-  const Eigen::Vector2d b = seen.entrance.tail<2>() - seen.entrance.head<2>();
-  constexpr double kCosine = 0.906;
-  if (a.dot(b) < kCosine * a.norm() * b.norm()) return false;
-  const Eigen::Vector2d middle = 0.5 * (seen.entrance.head<2>() + seen.entrance.tail<2>());
-  return (middle - track.middle()).norm() < 0.45 * std::min(a.norm(), b.norm());
-}
-
-}  // namespace
+using slot_registry::Corners;
+using slot_registry::logOdds;
+using slot_registry::Matrix4;
+using slot_registry::mayBeSame;
+using slot_registry::Seen;
+using slot_registry::toWorld;
+using slot_registry::Track;
+using slot_registry::Vector4;
 
 struct SlotRegistry::Impl {
   SlotRegistryOptions options;
   std::vector<Track> tracks;  // ordered by id
   std::int64_t next_id = 1;
+  struct Place {
+    Eigen::Vector2d p;
+    std::int64_t anchor;
+  };
+  std::vector<Place> way;  // of the vehicle's origin
 
   [[nodiscard]] double fadedLogOdds(const Track& track, TimeNs now_ns) const {
     const double seconds = std::max(0.0, toSeconds(now_ns - track.availability_ns));
@@ -202,6 +143,9 @@ SlotRegistry& SlotRegistry::operator=(SlotRegistry&&) noexcept = default;
 void SlotRegistry::update(const std::vector<SlotObservation>& observations, TimeNs t_ns,
                           const SE2& T_world_vehicle, std::int64_t anchor) {
   Impl& m = *impl_;
+  constexpr double kStep = 0.1;  // m
+  const Eigen::Vector2d place = T_world_vehicle.translation();
+  if (m.way.empty() || (place - m.way.back().p).norm() >= kStep) m.way.push_back({place, anchor});
   struct Pair {
     double distance;
     std::size_t track;
@@ -264,6 +208,7 @@ void SlotRegistry::moveWithAnchors(const std::function<SE2(std::int64_t)>& corre
     turn.bottomRightCorner<2, 2>() = R;
     track.covariance = (turn * track.covariance * turn.transpose()).eval();
   }
+  for (Impl::Place& place : impl_->way) place.p = correction(place.anchor) * place.p;
   impl_->mergeDuplicates();
 }
 
@@ -273,9 +218,14 @@ int SlotRegistry::candidates() const {
 
 std::vector<MapSlot> SlotRegistry::slots(TimeNs now_ns,
                                          const std::vector<MapObject>& objects) const {
+  std::vector<Eigen::Vector2d> way;
+  for (const Impl::Place& place : impl_->way) way.push_back(place.p);
   std::vector<MapSlot> result;
   for (const Track& track : impl_->tracks) {
-    if (!impl_->told(track)) continue;
+    if (!impl_->told(track) || drivenThrough(track.corners(), way) ||
+        holdsRoadMarking(track.corners(), objects)) {
+      continue;
+    }
     MapSlot slot;
     slot.id = track.id;
     slot.corners = track.corners();

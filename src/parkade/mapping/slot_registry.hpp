@@ -64,7 +64,8 @@ class SlotRegistry {
   /// correction(anchor): T_new_old, in the world.
   void moveWithAnchors(const std::function<SE2(std::int64_t)>& correction);
 
-  /// The slots seen often enough, ordered by id; zones from the markers among the objects.
+  /// The slots seen often enough that the vehicle did not drive through and that hold none of the
+  /// objects for who drives (arrows, stop lines, ...), ordered by id; zones from the markers.
   /// Probabilities are as of now_ns: what was seen long ago has faded.
   [[nodiscard]] std::vector<MapSlot> slots(TimeNs now_ns,
                                            const std::vector<MapObject>& objects = {}) const;

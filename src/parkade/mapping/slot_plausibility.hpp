@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "parkade/mapping/parking_map.hpp"
+
+// What speaks against a slot beside its own lines. Corners as MapSlot's, one frame for all.
+
+namespace parkade {
+
+/// Whether a way of the vehicle's origin crosses a slot's sides or its rear, a fifth within: who
+/// parks crosses the entrance alone.
+bool drivenThrough(const std::array<Eigen::Vector2d, 4>& corners,
+                   const std::vector<Eigen::Vector2d>& way);
+
+/// Whether the middle of a marking for who drives lies in the slot, a fifth within: an arrow, a
+/// limit, a stop line, a crossing or a bump.
+bool holdsRoadMarking(const std::array<Eigen::Vector2d, 4>& corners,
+                      const std::vector<MapObject>& objects);
+
+}  // namespace parkade
