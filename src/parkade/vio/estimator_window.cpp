@@ -111,19 +111,25 @@ void VioEstimator::Impl::marginaliseOldestKeyframe() {
 
 void VioEstimator::Impl::trimWindow() {
   const auto recent = static_cast<std::size_t>(options_.window.recent_frames);
-  if (window_.frames.size() > recent) {
-    const std::size_t index = window_.frames.size() - 1 - recent;
+  const TimeNs now = window_.frames.back().t_ns;
+  // Rest is told by a whole stretch: until one has passed, a frame's rest may yet be taken back.
+  const TimeNs doubtful = fromSeconds(options_.standstill.window_s);
+  std::size_t held = 0;
+  for (std::size_t index = 0; index + recent < window_.frames.size();) {
     WindowFrame& frame = window_.frames[index];
-    if (!frame.keyframe) {
-      if (wantsKeyframe(index)) {
-        frame.keyframe = true;
-      } else {
+    const bool waits = !frame.keyframe && frame.still_since >= 0 && now - frame.t_ns <= doubtful;
+    if (waits) ++held;
+    if (!frame.keyframe && !waits) {
+      if (!wantsKeyframe(index)) {
         removeFrame(index);
+        continue;
       }
+      frame.keyframe = true;
     }
+    ++index;
   }
-  while (static_cast<int>(window_.frames.size()) >
-         options_.window.keyframes + options_.window.recent_frames) {
+  while (window_.frames.size() >
+         static_cast<std::size_t>(options_.window.keyframes) + recent + held) {
     marginaliseOldestKeyframe();
   }
 }
