@@ -24,7 +24,7 @@ DATA = pathlib.Path(os.environ.get("PARKADE_TEST_DATA", SOURCE.parent / "shared"
 
 def parkade(*arguments):
     result = subprocess.run(
-        [PARKADE, *map(str, arguments)], capture_output=True, text=True, timeout=280
+        [PARKADE, *map(str, arguments)], capture_output=True, text=True, timeout=1200
     )
     if result.returncode != 0:
         raise AssertionError(f"{arguments}: {result.stdout}{result.stderr}")

@@ -12,7 +12,7 @@ SEQUENCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", 
 
 
 def run(*command):
-    result = subprocess.run(command, capture_output=True, text=True, timeout=280)
+    result = subprocess.run(command, capture_output=True, text=True, timeout=1200)
     if result.returncode != 0:
         sys.exit(f"{command[0]}: exit {result.returncode}\n{result.stdout}{result.stderr}")
     return result.stdout

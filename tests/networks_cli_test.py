@@ -19,7 +19,7 @@ PICTURES = SOURCE / "docs" / "images" / "simulator"
 
 def parkade(*arguments):
     return subprocess.run(
-        [PARKADE, *map(str, arguments)], capture_output=True, text=True, timeout=280
+        [PARKADE, *map(str, arguments)], capture_output=True, text=True, timeout=1200
     )
 
 

@@ -22,7 +22,7 @@ DURATION_S = 10
 
 def parkade(*arguments):
     return subprocess.run(
-        [PARKADE, *map(str, arguments)], capture_output=True, text=True, timeout=280
+        [PARKADE, *map(str, arguments)], capture_output=True, text=True, timeout=1200
     )
 
 

@@ -19,7 +19,7 @@ DRIVE += ["--duration", "1"]
 
 def sim(*arguments):
     return subprocess.run(
-        [PARKADE, "sim", *map(str, arguments)], capture_output=True, text=True, timeout=280
+        [PARKADE, "sim", *map(str, arguments)], capture_output=True, text=True, timeout=1200
     )
 
 
