@@ -16,7 +16,6 @@
 #include "parkade/eval/html_page.hpp"
 #include "parkade/eval/map_picture.hpp"
 #include "parkade/io/file.hpp"
-#include "parkade/io/image_file.hpp"
 #include "parkade/io/trajectory_io.hpp"
 
 namespace parkade::cli {
@@ -30,13 +29,7 @@ std::string mapErrors(const JudgedRun& run) {
   const Result<PlacedMap> placed = loadPlacedMap(run.folder, truth->driven);
   if (!placed) return "";
   const MapEvaluation evaluation = evaluateMap(placed->map, placed->T_truth_map, *truth);
-  const Result<cv::Mat> picture = drawMapErrors(placed->map, *truth, evaluation);
-  if (!picture) return "";
-  ImageEncoding png;
-  png.png = true;
-  png.png_level = 9;
-  const Result<std::string> bytes = encodeImage(*picture, png);
-  return bytes ? *bytes : "";
+  return reportPng(drawMapErrors(placed->map, *truth, evaluation));
 }
 
 struct DriveCharts {

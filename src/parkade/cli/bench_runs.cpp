@@ -12,11 +12,11 @@
 #include "parkade/cli/map_truth_file.hpp"
 #include "parkade/cli/sim_record.hpp"
 #include "parkade/cli/sim_truth.hpp"
+#include "parkade/cli/told_covariances.hpp"
 #include "parkade/core/random.hpp"
 #include "parkade/eval/map_report.hpp"
 #include "parkade/eval/report.hpp"
 #include "parkade/io/file.hpp"
-#include "parkade/io/pose_covariance_io.hpp"
 #include "parkade/io/sequence_writer.hpp"
 #include "parkade/io/trajectory_io.hpp"
 
@@ -98,13 +98,9 @@ Result<Json> judgeTrajectory(const std::string& trajectory, const std::string& s
   options.align = "origin";
   Result<Evaluation> anchored = evaluate(estimate->poses, truth->poses, options);
   if (!anchored) return anchored.error();
-  const std::string told = joinPath(fs::path(trajectory).parent_path().string(), "covariance.csv");
-  if (fs::is_regular_file(told)) {
-    const Result<PoseCovariances> covariances = readPoseCovariances(told);
-    if (!covariances) return covariances.error();
-    const auto consistency = poseConsistency(estimate->poses, *covariances, truth->poses);
-    if (consistency) anchored->consistency = *consistency;
-  }
+  const Status told = judgeCovariances(fs::path(trajectory).parent_path().string(), estimate->poses,
+                                       truth->poses, {}, *anchored);
+  if (!told) return told.error();
   options.align = "se3";
   const Result<Evaluation> aligned = evaluate(estimate->poses, truth->poses, options);
   if (!aligned) return aligned.error();

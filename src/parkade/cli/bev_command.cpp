@@ -58,13 +58,8 @@ class BevWriter {
     BevWriter writer;
     writer.folder_ = arguments.out;
     if (!arguments.overlay) return writer;
-    std::string path = arguments.network;
-    if (path.empty()) {
-      const Result<std::string> own = findModel("bev_segmentation");
-      if (!own) return own.error();
-      path = *own;
-    }
-    Result<SegmentationNetwork> network = SegmentationNetwork::load(path);
+    Result<SegmentationNetwork> network =
+        SegmentationNetwork::loadOrOwn(arguments.network, "bev_segmentation");
     if (!network) return network.error();
     writer.network_ = std::make_shared<SegmentationNetwork>(std::move(network).value());
     return writer;

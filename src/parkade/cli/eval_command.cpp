@@ -16,10 +16,10 @@
 #ifdef PARKADE_WITH_REPORT
 #include "parkade/cli/run_report.hpp"
 #endif
+#include "parkade/cli/told_covariances.hpp"
 #include "parkade/eval/plot.hpp"
 #include "parkade/eval/report.hpp"
 #include "parkade/io/file.hpp"
-#include "parkade/io/pose_covariance_io.hpp"
 #include "parkade/io/trajectory_io.hpp"
 
 namespace parkade::cli {
@@ -95,19 +95,6 @@ Result<TrajectoryFile> read(const Result<std::string>& path, const std::string& 
   return readReference(*path, options);
 }
 
-// Of a run's folder: is the covariance that it tells honest?
-Status judgeCovariances(const EvalArguments& arguments, const Trajectory& estimate,
-                        const Trajectory& reference, Evaluation& evaluation) {
-  const std::string path = joinPath(arguments.trajectory, "covariance.csv");
-  if (!fs::is_regular_file(path)) return {};
-  const auto covariances = readPoseCovariances(path);
-  if (!covariances) return covariances.error();
-  const auto consistency =
-      poseConsistency(estimate, *covariances, reference, arguments.options.association);
-  if (consistency) evaluation.consistency = *consistency;
-  return {};
-}
-
 Status checkClocks(const TrajectoryFile& estimate, const TrajectoryFile& reference,
                    const EvalArguments& arguments) {
   if (estimate.has_stamps != reference.has_stamps) {
@@ -136,7 +123,8 @@ Status evaluateFiles(const EvalArguments& arguments) {
     return Error{fmt::format("{} against {}: {}", arguments.trajectory, arguments.reference,
                              evaluation.error().message)};
   }
-  if (auto status = judgeCovariances(arguments, estimate->poses, reference->poses, *evaluation);
+  if (auto status = judgeCovariances(arguments.trajectory, estimate->poses, reference->poses,
+                                     arguments.options.association, *evaluation);
       !status) {
     return status;
   }

@@ -291,13 +291,8 @@ void ObjectScore::writeTo(nlohmann::json& metrics) const {
 Result<std::unique_ptr<SampleScore>> makeObjectScore(const ObjectScoreOptions& options) {
   std::optional<SegmentationNetwork> network;
   if (!options.true_labels) {
-    std::string path = options.bev_network;
-    if (path.empty()) {
-      const Result<std::string> own = findModel("bev_segmentation");
-      if (!own) return own.error();
-      path = *own;
-    }
-    Result<SegmentationNetwork> loaded = SegmentationNetwork::load(path);
+    Result<SegmentationNetwork> loaded =
+        SegmentationNetwork::loadOrOwn(options.bev_network, "bev_segmentation");
     if (!loaded) return loaded.error();
     network = std::move(loaded).value();
   }

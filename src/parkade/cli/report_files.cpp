@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "parkade/io/file.hpp"
+#include "parkade/io/image_file.hpp"
 
 namespace parkade::cli {
 namespace {
@@ -31,6 +32,15 @@ std::string reportText(const std::string& path) {
 Json reportJson(const std::string& path) {
   Json json = Json::parse(reportText(path), nullptr, false);
   return json.is_object() ? json : Json::object();
+}
+
+std::string reportPng(const Result<cv::Mat>& picture) {
+  if (!picture) return "";
+  ImageEncoding png;
+  png.png = true;
+  png.png_level = 9;
+  const Result<std::string> bytes = encodeImage(*picture, png);
+  return bytes ? *bytes : "";
 }
 
 double reportNumber(const Json& json, const std::string& pointer) {

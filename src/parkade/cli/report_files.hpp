@@ -3,9 +3,11 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <opencv2/core/mat.hpp>
 #include <string>
 #include <vector>
 
+#include "parkade/core/result.hpp"
 #include "parkade/eval/svg.hpp"
 #include "parkade/types/trajectory.hpp"
 
@@ -16,6 +18,8 @@ namespace parkade::cli {
 std::string reportText(const std::string& path);
 /// An object, empty where the file has none.
 nlohmann::ordered_json reportJson(const std::string& path);
+/// A picture as the bytes of a PNG, to stand in a page.
+std::string reportPng(const Result<cv::Mat>& picture);
 /// Not a number where there is none.
 double reportNumber(const nlohmann::ordered_json& json, const std::string& pointer);
 

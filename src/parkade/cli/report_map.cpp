@@ -36,18 +36,9 @@ std::vector<LegendEntry> entriesOf(const std::vector<MapColour>& colours) {
   return entries;
 }
 
-std::string pngOf(const Result<cv::Mat>& image) {
-  if (!image) return "";
-  ImageEncoding png;
-  png.png = true;
-  png.png_level = 9;
-  const Result<std::string> bytes = encodeImage(*image, png);
-  return bytes ? *bytes : "";
-}
-
 std::optional<GroundPicture> mapPicture(const ParkingMap& map) {
   const Result<cv::Mat> image = drawMap(map, kMetresPerPx);
-  const std::string bytes = pngOf(image);
+  const std::string bytes = reportPng(image);
   if (bytes.empty()) return std::nullopt;
   return GroundPicture{dataUri("image/png", bytes), mapPictureCorner(map),
                        kMetresPerPx * Eigen::Vector2d(image->cols, image->rows), false};
@@ -191,8 +182,9 @@ void addLayerFigures(const ReportedRun& run, HtmlPage& page) {
   for (std::size_t i = 0; i < kNumGridLayers; ++i) {
     const GridLayer layer = kGridLayers[i];
     const bool slots = layer == GridLayer::kAvailability && !run.map->slots.empty();
-    const std::string bytes =
-        slots || run.map->grid.bounds(layer) ? pngOf(drawLayer(*run.map, layer, kMetresPerPx)) : "";
+    const std::string bytes = slots || run.map->grid.bounds(layer)
+                                  ? reportPng(drawLayer(*run.map, layer, kMetresPerPx))
+                                  : "";
     if (bytes.empty()) {
       without.emplace_back(kCaptions[i]);
     } else {

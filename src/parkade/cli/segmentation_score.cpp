@@ -216,17 +216,13 @@ void SegmentationScore::writeTo(nlohmann::json& metrics) const {
 
 Result<std::unique_ptr<SampleScore>> makeSegmentationScore(
     const SegmentationScoreOptions& options) {
-  const auto load = [](const std::string& path, const char* own) -> Result<SegmentationNetwork> {
-    if (!path.empty()) return SegmentationNetwork::load(path);
-    const Result<std::string> found = findModel(own);
-    if (!found) return found.error();
-    return SegmentationNetwork::load(*found);
-  };
-  Result<SegmentationNetwork> bev = load(options.bev_network, "bev_segmentation");
+  Result<SegmentationNetwork> bev =
+      SegmentationNetwork::loadOrOwn(options.bev_network, "bev_segmentation");
   if (!bev) return bev.error();
   std::optional<SegmentationNetwork> raw;
   if (!options.raw_network.empty() || findModel("view_segmentation")) {
-    Result<SegmentationNetwork> loaded = load(options.raw_network, "view_segmentation");
+    Result<SegmentationNetwork> loaded =
+        SegmentationNetwork::loadOrOwn(options.raw_network, "view_segmentation");
     if (!loaded) return loaded.error();
     raw = std::move(loaded).value();
   }

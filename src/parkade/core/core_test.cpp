@@ -8,6 +8,7 @@
 
 #include "parkade/core/check.hpp"
 #include "parkade/core/log.hpp"
+#include "parkade/core/markup.hpp"
 #include "parkade/core/random.hpp"
 #include "parkade/core/result.hpp"
 #include "parkade/core/time.hpp"
@@ -111,6 +112,15 @@ TEST(Random, MomentsOfTheDistributions) {
   for (const int bin : bins) EXPECT_NEAR(bin, kCount / 6.0, 800.0);
   EXPECT_THROW(static_cast<void>(random.index(0)), CheckError);
   EXPECT_THROW(static_cast<void>(random.integer(2, 1)), CheckError);
+}
+
+TEST(Markup, NothingOfATextIsTakenForATag) {
+  EXPECT_EQ(escapedMarkup("a < b & \"c\" > d"), "a &lt; b &amp; &quot;c&quot; &gt; d");
+  EXPECT_EQ(escapedMarkup("two\nlines\x01"), "two lines ");
+  EXPECT_EQ(escapedMarkup("Stra\xc3\x9f"
+                          "e"),
+            "Stra\xc3\x9f"
+            "e");
 }
 
 }  // namespace

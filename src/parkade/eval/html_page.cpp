@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "parkade/core/markup.hpp"
+
 namespace parkade {
 namespace {
 
@@ -36,29 +38,6 @@ constexpr const char* kStyle =
     "summary{cursor:pointer;font-weight:600}\n"
     "@media(max-width:600px){th,td{padding:4px 6px}"
     "th:first-child,td:first-child{white-space:normal;max-width:7.5em}}\n";
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
 
 }  // namespace
 
@@ -92,24 +71,24 @@ HtmlPage::HtmlPage(std::string_view title)
           // An empty picture, or the browser asks for one.
           "<link rel=\"icon\" href=\"data:,\">\n"
           "<title>{0}</title>\n<style>\n{1}</style>\n</head>\n<body>\n<main>\n<h1>{0}</h1>\n",
-          escaped(title), kStyle)) {}
+          escapedMarkup(title), kStyle)) {}
 
 void HtmlPage::section(std::string_view title) {
-  body_ += fmt::format("<h2>{}</h2>\n", escaped(title));
+  body_ += fmt::format("<h2>{}</h2>\n", escapedMarkup(title));
 }
 
 void HtmlPage::subsection(std::string_view title) {
-  body_ += fmt::format("<h3>{}</h3>\n", escaped(title));
+  body_ += fmt::format("<h3>{}</h3>\n", escapedMarkup(title));
 }
 
 void HtmlPage::paragraph(std::string_view text) {
-  body_ += fmt::format("<p>{}</p>\n", escaped(text));
+  body_ += fmt::format("<p>{}</p>\n", escapedMarkup(text));
 }
 
 void HtmlPage::tableBody(const TextTable& table) {
   body_ += "<div class=\"scroll\"><table>\n<thead><tr>";
   for (const std::string& one : table.header) {
-    body_ += fmt::format("<th>{}</th>", escaped(one));
+    body_ += fmt::format("<th>{}</th>", escapedMarkup(one));
   }
   body_ += "</tr></thead>\n<tbody>\n";
   for (const auto& row : table.rows) {
@@ -117,24 +96,25 @@ void HtmlPage::tableBody(const TextTable& table) {
     for (std::size_t i = 0; i < std::max(row.size(), table.header.size()); ++i) {
       const std::string text = i < row.size() ? row[i] : "";
       body_ += fmt::format("<td{}>{}</td>", text.starts_with("failed") ? " class=\"failed\"" : "",
-                           escaped(text));
+                           escapedMarkup(text));
     }
     body_ += "</tr>\n";
   }
   body_ += "</tbody></table></div>\n";
   if (!table.note.empty()) {
-    body_ += fmt::format("<p class=\"note\">{}</p>\n", escaped(table.note));
+    body_ += fmt::format("<p class=\"note\">{}</p>\n", escapedMarkup(table.note));
   }
 }
 
 void HtmlPage::table(const TextTable& table) {
-  body_ += fmt::format("<div class=\"card\"><h3>{}</h3>\n", escaped(table.title));
+  body_ += fmt::format("<div class=\"card\"><h3>{}</h3>\n", escapedMarkup(table.title));
   tableBody(table);
   body_ += "</div>\n";
 }
 
 void HtmlPage::foldedTable(const TextTable& table) {
-  body_ += fmt::format("<details class=\"card\"><summary>{}</summary>\n", escaped(table.title));
+  body_ +=
+      fmt::format("<details class=\"card\"><summary>{}</summary>\n", escapedMarkup(table.title));
   tableBody(table);
   body_ += "</details>\n";
 }
@@ -151,13 +131,13 @@ void HtmlPage::figure(const std::string& address, std::string_view caption,
                       const std::vector<LegendEntry>& legend) {
   std::string colours;
   for (const LegendEntry& entry : legend) {
-    colours += fmt::format("<span><i style=\"background:{}\"></i>{}</span>", escaped(entry.colour),
-                           escaped(entry.name));
+    colours += fmt::format("<span><i style=\"background:{}\"></i>{}</span>",
+                           escapedMarkup(entry.colour), escapedMarkup(entry.name));
   }
   if (!colours.empty()) colours = "<span class=\"legend\">" + colours + "</span>";
   body_ +=
       fmt::format("<figure><img alt=\"{0}\" src=\"{1}\"><figcaption>{0}{2}</figcaption></figure>\n",
-                  escaped(caption), address, colours);
+                  escapedMarkup(caption), address, colours);
 }
 
 void HtmlPage::svg(std::string_view document, std::string_view caption,

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "parkade/core/check.hpp"
+#include "parkade/core/markup.hpp"
 
 namespace parkade::svg {
 namespace {
@@ -18,30 +19,6 @@ std::string number(double value) {
   std::string text = fmt::format("{:.1f}", value);
   if (text.ends_with(".0")) text.resize(text.size() - 2);
   return text == "-0" ? "0" : text;
-}
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        // Control characters are not allowed in XML.
-        result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return result;
 }
 
 double distanceToSegment(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
@@ -71,7 +48,7 @@ Document::Document(double width, double height, std::string_view title, std::str
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" "
       "viewBox=\"0 0 {} {}\" role=\"img\">\n<title>{}</title>\n<style>\n{}</style>\n"
       "<rect width=\"{}\" height=\"{}\" fill=\"#ffffff\"/>\n",
-      w, h, w, h, escaped(title), style, w, h);
+      w, h, w, h, escapedMarkup(title), style, w, h);
 }
 
 void Document::line(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
@@ -119,7 +96,7 @@ void Document::text(const Eigen::Vector2d& position, std::string_view text,
   const std::string turn =
       vertical ? fmt::format(" transform=\"rotate(-90 {} {})\"", x, y) : std::string();
   body_ += fmt::format("<text class=\"{}\" x=\"{}\" y=\"{}\"{}>{}</text>\n", css_class, x, y, turn,
-                       escaped(text));
+                       escapedMarkup(text));
 }
 
 void Document::image(const Eigen::Vector2d& corner, const Eigen::Vector2d& size,
@@ -127,7 +104,8 @@ void Document::image(const Eigen::Vector2d& corner, const Eigen::Vector2d& size,
   body_ += fmt::format(
       "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" "
       "href=\"{}\"/>\n",
-      number(corner.x()), number(corner.y()), number(size.x()), number(size.y()), escaped(address));
+      number(corner.x()), number(corner.y()), number(size.x()), number(size.y()),
+      escapedMarkup(address));
 }
 
 void Document::beginClip(const Eigen::Vector2d& corner, const Eigen::Vector2d& size) {

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "parkade/core/markup.hpp"
 #include "parkade/mapping/map_drawing.hpp"
 
 namespace parkade {
@@ -122,7 +123,7 @@ class OsmWriter {
     ways_ += fmt::format("  <way id=\"{}\">\n", next_id_++);
     for (const int id : nodes) ways_ += fmt::format("    <nd ref=\"{}\"/>\n", id);
     for (const auto& [key, value] : tags) {
-      ways_ += fmt::format("    <tag k=\"{}\" v=\"{}\"/>\n", key, escaped(value));
+      ways_ += fmt::format("    <tag k=\"{}\" v=\"{}\"/>\n", key, escapedMarkup(value));
     }
     ways_ += "  </way>\n";
   }
@@ -134,28 +135,6 @@ class OsmWriter {
   }
 
  private:
-  static std::string escaped(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-      switch (c) {
-        case '&':
-          out += "&amp;";
-          break;
-        case '<':
-          out += "&lt;";
-          break;
-        case '>':
-          out += "&gt;";
-          break;
-        case '"':
-          out += "&quot;";
-          break;
-        default:  // XML knows no control characters
-          out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-      }
-    }
-    return out;
-  }
   int next_id_ = 1;
   std::string nodes_;
   std::string ways_;

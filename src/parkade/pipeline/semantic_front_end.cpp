@@ -11,7 +11,6 @@
 #include "parkade/core/check.hpp"
 #include "parkade/geometry/se2.hpp"
 #include "parkade/pipeline/stitched_views.hpp"
-#include "parkade/semantics/class_map.hpp"
 #include "parkade/semantics/segmentation.hpp"
 #include "parkade/tracking/overlap.hpp"
 
@@ -51,13 +50,8 @@ SemanticFrontEnd::~SemanticFrontEnd() = default;
 
 Result<std::unique_ptr<SemanticFrontEnd>> SemanticFrontEnd::create(
     const Rig& rig, const SemanticFrontEndOptions& options) {
-  std::string path = options.network;
-  if (path.empty()) {
-    const Result<std::string> own = findModel("bev_segmentation");
-    if (!own) return own.error();
-    path = *own;
-  }
-  Result<SegmentationNetwork> network = SegmentationNetwork::load(path);
+  Result<SegmentationNetwork> network =
+      SegmentationNetwork::loadOrOwn(options.network, "bev_segmentation");
   if (!network) return network.error();
   const Result<std::vector<cv::Mat>> masks = readBodyMasks(rig);
   if (!masks) return masks.error();

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "parkade/semantics/marking_pieces.hpp"
+
 namespace parkade {
 namespace {
 
@@ -72,20 +74,7 @@ std::vector<std::pair<LineRun, SemanticClass>> runsOf(const cv::Mat& labels, int
 }  // namespace
 
 bool hidesFloor(SemanticClass semantic_class) {
-  switch (semantic_class) {
-    case SemanticClass::kFloor:
-    case SemanticClass::kSlotLine:
-    case SemanticClass::kLaneLine:
-    case SemanticClass::kArrow:
-    case SemanticClass::kSpeedLimitPaint:
-    case SemanticClass::kStopLine:
-    case SemanticClass::kCrossing:
-    case SemanticClass::kSpeedBump:
-    case SemanticClass::kPaintedNumber:
-      return false;
-    default:
-      return true;
-  }
+  return hidesGround(semantic_class) || semantic_class == SemanticClass::kWheelStop;
 }
 
 void LineChain::fitAround(std::size_t index, double& center, double& slope) const {

@@ -122,6 +122,14 @@ const ClassMap& SegmentationNetwork::classMap() const {
   return impl_->map;
 }
 
+Result<SegmentationNetwork> SegmentationNetwork::loadOrOwn(const std::string& class_map_path,
+                                                           const std::string& own_name) {
+  if (!class_map_path.empty()) return load(class_map_path);
+  const Result<std::string> own = findModel(own_name);
+  if (!own) return own.error();
+  return load(*own);
+}
+
 Result<SegmentationNetwork> SegmentationNetwork::load(const std::string& class_map_path) {
   Result<ClassMap> map = readClassMap(class_map_path);
   if (!map) return map.error();

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "parkade/semantics/marking_pieces.hpp"
+
 namespace parkade {
 namespace {
 
@@ -60,7 +62,7 @@ double probabilityFree(const LabelProbe& probe, const BevViews& views,
     for (int i = 0; i < kAcross; ++i) {
       const Vector2d p = at(0.3 + 0.4 * i / (kAcross - 1), b);
       const SemanticClass c = probe.at(p);
-      if (!hidesFloor(c) || c == SemanticClass::kWheelStop) {
+      if (!hidesGround(c)) {
         floor += 1.0;
       } else if (c == SemanticClass::kVehicle && inside(footOf(probe, views, p))) {
         car += 1.0;
