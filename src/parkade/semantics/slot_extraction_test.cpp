@@ -158,6 +158,20 @@ TEST(SlotExtraction, TellsFreeFromOccupied) {
   EXPECT_GT(slotAt(slots, row.front(2))->probability_free, 0.9);
 }
 
+// Low cameras see the floor below a parked car: its labels begin half way down the slot.
+TEST(SlotExtraction, FloorSeenBelowACarIsNotFree) {
+  Row row;
+  row.count = 3;
+  PaintedFloor floor;
+  row.paint(floor);
+  floor.polygon({{2.2, -8.0}, {2.2, -5.0}, {0.3, -5.0}, {0.3, -8.0}}, SemanticClass::kVehicle, 30);
+  const std::vector<SlotObservation> slots = slotsOf(floor);
+  ASSERT_EQ(slots.size(), 3U);
+  EXPECT_GT(slotAt(slots, row.front(0))->probability_free, 0.9);
+  EXPECT_LT(slotAt(slots, row.front(1))->probability_free, 0.1);
+  EXPECT_GT(slotAt(slots, row.front(2))->probability_free, 0.9);
+}
+
 TEST(SlotExtraction, KnowsNothingOfWhatItDoesNotSee) {
   Row row;
   row.count = 1;
