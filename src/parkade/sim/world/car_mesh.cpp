@@ -6,201 +6,17 @@
 #include <cmath>
 #include <vector>
 
+#include "parkade/sim/world/car_profile.hpp"
 #include "parkade/sim/world/mesh_builder.hpp"
 
 namespace parkade::sim {
 namespace {
 
-// A curve over the share of the length (0 at the nose, 1 at the tail), through given points.
-class Curve {
- public:
-  Curve(std::initializer_list<Eigen::Vector2f> points) : points_(points) {}
-  [[nodiscard]] float operator()(float s) const {
-    if (s <= points_.front().x()) return points_.front().y();
-    for (std::size_t i = 1; i < points_.size(); ++i) {
-      if (s > points_[i].x()) continue;
-      const Eigen::Vector2f& a = points_[i - 1];
-      const Eigen::Vector2f& b = points_[i];
-      return a.y() + (b.y() - a.y()) * (s - a.x()) / (b.x() - a.x());
-    }
-    return points_.back().y();
-  }
-
- private:
-  std::vector<Eigen::Vector2f> points_;
-};
-
-// The side view of a body: heights as shares of the car's height, places as shares of its length.
-struct Profile {
-  Curve top;          // of the body's middle, hood to tail
-  Curve belt;         // lower edge of the side windows
-  float screen_low;   // windscreen's foot
-  float screen_high;  // and its upper edge
-  float rear_high;    // rear window's upper edge
-  float rear_low;     // and its foot
-  float pillar_b;     // between front and rear doors
-  float pillar_c;     // behind the rear doors; cabin glass may go on behind it (estate, van)
-  float side_end;     // where the side glass ends
-  float front_axle;
-  float rear_axle;
-  float wheel_radius;  // m
-};
-
-Profile profileOf(CarBody body) {
-  switch (body) {
-    case CarBody::kSedan:
-      return {{{0.00F, 0.40F},
-               {0.02F, 0.46F},
-               {0.06F, 0.52F},
-               {0.20F, 0.60F},
-               {0.27F, 0.65F},
-               {0.42F, 0.96F},
-               {0.52F, 1.00F},
-               {0.62F, 0.99F},
-               {0.70F, 0.94F},
-               {0.84F, 0.74F},
-               {0.94F, 0.72F},
-               {0.99F, 0.69F},
-               {1.00F, 0.62F}},
-              {{0.0F, 0.55F}, {0.27F, 0.63F}, {0.85F, 0.68F}, {1.0F, 0.66F}},
-              0.28F,
-              0.42F,
-              0.68F,
-              0.83F,
-              0.50F,
-              0.66F,
-              0.78F,
-              0.19F,
-              0.78F,
-              0.325F};
-    case CarBody::kHatchback:
-      return {{{0.00F, 0.40F},
-               {0.02F, 0.47F},
-               {0.07F, 0.54F},
-               {0.20F, 0.60F},
-               {0.26F, 0.64F},
-               {0.42F, 0.95F},
-               {0.55F, 1.00F},
-               {0.80F, 0.97F},
-               {0.88F, 0.92F},
-               {0.97F, 0.66F},
-               {0.99F, 0.60F},
-               {1.00F, 0.52F}},
-              {{0.0F, 0.54F}, {0.26F, 0.61F}, {0.9F, 0.68F}, {1.0F, 0.66F}},
-              0.27F,
-              0.42F,
-              0.87F,
-              0.96F,
-              0.52F,
-              0.72F,
-              0.86F,
-              0.20F,
-              0.81F,
-              0.315F};
-    case CarBody::kEstate:
-      return {{{0.00F, 0.40F},
-               {0.02F, 0.46F},
-               {0.06F, 0.53F},
-               {0.20F, 0.60F},
-               {0.26F, 0.65F},
-               {0.40F, 0.95F},
-               {0.52F, 1.00F},
-               {0.84F, 0.98F},
-               {0.91F, 0.93F},
-               {0.98F, 0.68F},
-               {0.99F, 0.62F},
-               {1.00F, 0.54F}},
-              {{0.0F, 0.55F}, {0.26F, 0.62F}, {0.9F, 0.67F}, {1.0F, 0.66F}},
-              0.27F,
-              0.40F,
-              0.90F,
-              0.97F,
-              0.48F,
-              0.66F,
-              0.89F,
-              0.19F,
-              0.77F,
-              0.325F};
-    case CarBody::kSuv:
-      return {{{0.00F, 0.42F},
-               {0.02F, 0.50F},
-               {0.06F, 0.58F},
-               {0.20F, 0.63F},
-               {0.26F, 0.67F},
-               {0.39F, 0.95F},
-               {0.50F, 1.00F},
-               {0.82F, 0.98F},
-               {0.90F, 0.93F},
-               {0.97F, 0.68F},
-               {0.99F, 0.60F},
-               {1.00F, 0.50F}},
-              {{0.0F, 0.58F}, {0.26F, 0.64F}, {0.9F, 0.68F}, {1.0F, 0.66F}},
-              0.27F,
-              0.39F,
-              0.89F,
-              0.96F,
-              0.48F,
-              0.67F,
-              0.87F,
-              0.20F,
-              0.79F,
-              0.365F};
-    case CarBody::kVan:
-      return {{{0.00F, 0.32F},
-               {0.02F, 0.40F},
-               {0.05F, 0.46F},
-               {0.12F, 0.52F},
-               {0.16F, 0.56F},
-               {0.29F, 0.93F},
-               {0.38F, 1.00F},
-               {0.90F, 0.99F},
-               {0.96F, 0.96F},
-               {0.99F, 0.60F},
-               {1.00F, 0.45F}},
-              {{0.0F, 0.46F}, {0.16F, 0.53F}, {1.0F, 0.55F}},
-              0.17F,
-              0.29F,
-              0.965F,
-              0.99F,
-              0.42F,
-              0.64F,
-              0.93F,
-              0.19F,
-              0.78F,
-              0.345F};
-    case CarBody::kSmall:
-      break;
-  }
-  return {{{0.00F, 0.38F},
-           {0.02F, 0.45F},
-           {0.07F, 0.52F},
-           {0.16F, 0.58F},
-           {0.22F, 0.62F},
-           {0.38F, 0.95F},
-           {0.52F, 1.00F},
-           {0.80F, 0.97F},
-           {0.90F, 0.90F},
-           {0.98F, 0.62F},
-           {0.99F, 0.56F},
-           {1.00F, 0.48F}},
-          {{0.0F, 0.52F}, {0.22F, 0.59F}, {0.9F, 0.65F}, {1.0F, 0.62F}},
-          0.23F,
-          0.38F,
-          0.89F,
-          0.975F,
-          0.54F,
-          0.76F,
-          0.87F,
-          0.18F,
-          0.83F,
-          0.29F};
-}
-
 constexpr int kSidePoints = 17;  // of half a cross-section, underside to roof
 
 // Half a cross-section at a share of the length: (y, z) from the underside's middle to the roof's.
-std::array<Eigen::Vector2f, kSidePoints> crossSection(const Profile& profile, const CarSize& size,
-                                                      float s) {
+std::array<Eigen::Vector2f, kSidePoints> crossSection(const CarProfile& profile,
+                                                      const CarSize& size, float s) {
   const auto height = static_cast<float>(size.height);
   const float half = 0.5F * static_cast<float>(size.width);
   // The nose and the tail are rounded as seen from above.
@@ -246,7 +62,7 @@ std::array<Eigen::Vector2f, kSidePoints> crossSection(const Profile& profile, co
 constexpr int kBeltPoint = 8;
 constexpr int kEdgePoint = 12;
 
-std::uint16_t bodyMaterial(const Profile& profile, const CarMaterials& m, float s, int step) {
+std::uint16_t bodyMaterial(const CarProfile& profile, const CarMaterials& m, float s, int step) {
   const bool side_glass = step >= kBeltPoint && step < kEdgePoint;
   const bool on_top = step >= kEdgePoint;
   if (step < 2) return m.trim;
@@ -266,7 +82,7 @@ std::uint16_t bodyMaterial(const Profile& profile, const CarMaterials& m, float 
 
 // Shares of the length where cross-sections stand: closer together at both ends and at the edges of
 // the windows, so that materials change there.
-std::vector<float> stations(const Profile& profile) {
+std::vector<float> stations(const CarProfile& profile) {
   std::vector<float> shares = {0.0F,  0.01F, 0.02F, 0.04F, 0.06F, 0.10F, 0.15F,
                                0.20F, 0.90F, 0.94F, 0.96F, 0.98F, 0.99F, 1.0F};
   for (int i = 1; i < 20; ++i) shares.push_back(0.2F + 0.7F * static_cast<float>(i) / 20.0F);
@@ -286,7 +102,7 @@ std::vector<float> stations(const Profile& profile) {
   return kept;
 }
 
-void addHull(MeshBuilder& builder, const Profile& profile, const CarSize& size,
+void addHull(MeshBuilder& builder, const CarProfile& profile, const CarSize& size,
              const CarMaterials& materials) {
   const auto length = static_cast<float>(size.length);
   const std::vector<float> shares = stations(profile);
@@ -310,7 +126,7 @@ void addHull(MeshBuilder& builder, const Profile& profile, const CarSize& size,
 }
 
 // The flat faces of nose and tail, in strips from side to side.
-void addEnd(MeshBuilder& builder, const Profile& profile, const CarSize& size,
+void addEnd(MeshBuilder& builder, const CarProfile& profile, const CarSize& size,
             const CarMaterials& materials, bool nose) {
   const float s = nose ? 0.0F : 1.0F;
   const auto section = crossSection(profile, size, s);
@@ -345,7 +161,7 @@ void addEnd(MeshBuilder& builder, const Profile& profile, const CarSize& size,
 }
 
 // Lamps that wrap around the corners, plates, door handles' line and mirrors.
-void addDetails(MeshBuilder& builder, const Profile& profile, const CarSize& size,
+void addDetails(MeshBuilder& builder, const CarProfile& profile, const CarSize& size,
                 const CarMaterials& materials) {
   const auto length = static_cast<float>(size.length);
   const auto height = static_cast<float>(size.height);
@@ -396,7 +212,7 @@ void addDetails(MeshBuilder& builder, const Profile& profile, const CarSize& siz
   }
 }
 
-void addWheels(MeshBuilder& builder, const Profile& profile, const CarSize& size,
+void addWheels(MeshBuilder& builder, const CarProfile& profile, const CarSize& size,
                const CarMaterials& materials) {
   const auto length = static_cast<float>(size.length);
   const float side = 0.5F * static_cast<float>(size.width);
@@ -450,7 +266,7 @@ std::uint16_t addMaterial(Scene& scene, const char* name, const Eigen::Vector3f&
   return static_cast<std::uint16_t>(scene.materials.size() - 1);
 }
 
-Mesh buildCar(const Profile& profile, const CarSize& size, const CarMaterials& materials) {
+Mesh buildCar(const CarProfile& profile, const CarSize& size, const CarMaterials& materials) {
   MeshBuilder hull;
   addHull(hull, profile, size, materials);
   addEnd(hull, profile, size, materials, true);
@@ -502,12 +318,12 @@ std::uint16_t addCarPaint(Scene& scene, const Eigen::Vector3f& colour, bool meta
 }
 
 Mesh makeCarMesh(CarBody body, const CarSize& size, const CarMaterials& materials) {
-  return buildCar(profileOf(body), size, materials);
+  return buildCar(carProfile(body), size, materials);
 }
 
 Mesh egoCarMesh(const VehicleShape& shape, const CarMaterials& materials) {
   const double length = shape.wheelbase + shape.front_overhang + shape.rear_overhang;
-  Profile profile = profileOf(CarBody::kSedan);
+  CarProfile profile = carProfile(CarBody::kSedan);
   profile.front_axle = static_cast<float>(shape.front_overhang / length);
   profile.rear_axle = static_cast<float>(1.0 - shape.rear_overhang / length);
   Mesh mesh = buildCar(profile, {length, shape.width, shape.height}, materials);

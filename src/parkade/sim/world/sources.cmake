@@ -3,6 +3,7 @@
 list(APPEND SIM_PRIVATE_DEPS opencv_imgproc nlohmann_json::nlohmann_json)
 set(WORLD_SOURCES
     world/agent_motion.cpp
+    world/agent_tracks.cpp
     world/agents.cpp
     garage.cpp
     scene.cpp
@@ -10,6 +11,7 @@ set(WORLD_SOURCES
     world/aisle_paint.cpp
     world/arrows.cpp
     world/car_mesh.cpp
+    world/car_profile.cpp
     world/coverage.cpp
     world/fittings.cpp
     world/floor_build.cpp
