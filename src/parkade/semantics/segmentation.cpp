@@ -13,6 +13,7 @@
 
 #include "parkade/core/check.hpp"
 #include "parkade/semantics/label_decoding.hpp"
+#include "parkade/semantics/paint_strokes.hpp"
 
 namespace parkade {
 namespace {
@@ -195,6 +196,7 @@ Result<BevLabels> SegmentationNetwork::segment(const BevImage& bev) {
     cv::resize(result.confidence(used), result.confidence, bev.image.size(), 0, 0,
                cv::INTER_NEAREST);
   }
+  uniteStrokes(result.labels, bev.geometry.metres_per_px);
   const cv::Mat unseen = bev.valid == 0;
   result.labels.setTo(static_cast<int>(SemanticClass::kUnknown), unseen);
   result.confidence.setTo(0, unseen);

@@ -37,8 +37,9 @@ class SegmentationNetwork {
 
   [[nodiscard]] const ClassMap& classMap() const;
 
-  /// Labels a bird's-eye picture (BGR or grey); where it is not valid: kUnknown, confidence 0. The
-  /// picture is brought to the network's metres per pixel and the labels back. Fails where the
+  /// Labels a bird's-eye picture (BGR or grey); where it is not valid: kUnknown, confidence 0.
+  /// Strokes that the network cuts into several classes are united (uniteStrokes). The picture is
+  /// brought to the network's metres per pixel and the labels back. Fails where the
   /// network is for camera views, or for one size only and the picture has another.
   Result<BevLabels> segment(const BevImage& bev);
 
