@@ -74,6 +74,34 @@ class NetworksTest(unittest.TestCase):
         self.assertGreater(scores["iou"]["floor"], 0.1)
         self.assertLessEqual(scores["iou"]["floor"], 1.0)
 
+    def test_marking_points_of_real_pictures(self):
+        data = pathlib.Path(os.environ.get("PARKADE_TEST_DATA", SOURCE.parent / "shared" / "data"))
+        if not (data / "ps20_bev" / "annotations.txt").exists():
+            self.skipTest(f"no {data}/ps20_bev")
+        out = self.folder / "points"
+        result = parkade("bench", "semantics", "--marking-points", data / "ps20_bev", "--out", out)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        metrics = json.loads((out / "metrics.json").read_text(encoding="utf-8"))
+        scores = metrics["marking_points"]
+        self.assertEqual(scores["pictures"], 20)
+        self.assertEqual(scores["corners of slots"]["true"], 49)
+        # The network never saw a real picture, and is poor on them; but not blind.
+        self.assertGreater(scores["and other ends of lines"]["recall"], 0.1)
+
+    def test_broken_annotations(self):
+        folder = self.folder / "marked"
+        folder.mkdir()
+        arguments = ("bench", "semantics", "--marking-points", folder, "--out", self.folder / "y")
+        result = parkade(*arguments)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("annotations.txt", result.stderr)
+        lines = "a.jpg 1,2,3,4,0\nb.jpg 1,2,3\n"
+        (folder / "annotations.txt").write_text(lines, encoding="utf-8")
+        result = parkade(*arguments)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("annotations.txt:2", result.stderr)
+        self.assertIn("x0,y0,x1,y1,class", result.stderr)
+
     def test_wrong_garages(self):
         for text in ("random", "paper", "random:0", "random:9-3", "random:x"):
             result = parkade("bench", "semantics", "--garages", text, "--out", self.folder / "x")

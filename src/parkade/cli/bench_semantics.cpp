@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "parkade/cli/command.hpp"
+#include "parkade/cli/marking_points.hpp"
 #include "parkade/cli/sample_score.hpp"
 #include "parkade/cli/semantic_garages.hpp"
 #include "parkade/cli/semantic_samples.hpp"
@@ -31,12 +32,14 @@ constexpr const char* kFooter =
     "Examples:\n"
     "  parkade bench semantics --garages random:20 --out DIR\n"
     "  parkade bench semantics --garages random:3 --out DIR --pictures --network mine.yaml\n"
+    "  parkade bench semantics --marking-points PS2.0 --out DIR --pictures\n"
     "  parkade bench semantics --garages random:0-99 --samples DATA   (training data)";
 
 struct BenchArguments {
   std::string garages = "random:20";
   std::string out;
   std::string samples;
+  std::string marking_points;
   bool pictures = false;
   bool fast = false;
   int threads = defaultThreads();
@@ -185,6 +188,14 @@ int run(BenchArguments& arguments) {
     const Status status = setOption(asOptions(arguments.options), setting);
     if (!status) return fail(status.error());
   }
+  if (!arguments.marking_points.empty()) {
+    const Status status =
+        arguments.out.empty() || !arguments.samples.empty()
+            ? Status(Error{"bench semantics: --marking-points DIR needs --out DIR"})
+            : scoreMarkingPoints({arguments.marking_points, arguments.segmentation.bev_network,
+                                  arguments.out, arguments.pictures});
+    return status ? 0 : fail(status.error());
+  }
   const Result<std::vector<int>> seeds = parseGarages(arguments.garages);
   if (!seeds) return fail(seeds.error());
   if (arguments.out.empty() == arguments.samples.empty()) {
@@ -223,6 +234,11 @@ void addBenchSemantics(CLI::App& bench, int& exit_code) {
   command->add_flag("--pictures", arguments->pictures,
                     "Write every picture, with found and with true labels, to DIR/pictures");
   command->add_option("--samples", arguments->samples, "Write training samples instead of scores")
+      ->type_name("DIR");
+  command
+      ->add_option("--marking-points", arguments->marking_points,
+                   "Score slots' corners on marked real pictures instead: 10 m wide, with "
+                   "annotations.txt (docs/networks.md)")
       ->type_name("DIR");
   command->add_flag("--fast", arguments->fast, "One sample per pixel instead of 2 x 2");
   command->add_option("--threads", arguments->threads, "Threads that draw [all processors]")
