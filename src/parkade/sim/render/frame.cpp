@@ -19,6 +19,7 @@ constexpr int kTilePixels = kTile * kTile;
 constexpr int kMaxSamples = 4;
 constexpr float kSharp = 0.35F;     // rougher than this only floors mirror
 constexpr float kFaintest = 0.02F;  // mirror images weaker than this are not traced off the floor
+constexpr int kBlock = 4;           // pixels a side
 constexpr float kFaint = 0.06F;  // with one sample a pixel, floors that mirror less send fewer rays
 
 /// The samples of a tile: [pixel * samples + sample].
@@ -53,8 +54,9 @@ class FrameTracer {
   /// The pixel without mirror images; main: the surface whose image shows best, weight: how well.
   Eigen::Vector3f shadePixel(const SurfaceHit* hits, const Eigen::Vector3f* directions,
                              float spread, MirrorSource& main) const;
-  void traceMirrors(int tile, std::vector<MirrorRay>& floor, const std::vector<MirrorRay>& other,
-                    Radiance& out, ReflectionBuffer& mirror) const;
+  void traceMirrors(int tile, const std::vector<MirrorRay>& floor,
+                    const std::vector<MirrorRay>& other, Radiance& out,
+                    ReflectionBuffer& mirror) const;
 
   const FrameSetup& setup_;
   const RayTable& table_;
@@ -108,7 +110,7 @@ void FrameTracer::traceTile(int tile, TileSamples& out) const {
     for (int k = 0; k < kPacket; ++k) {
       const auto i = static_cast<std::size_t>(table_.slot(p, k));
       out.hits[i] = hitOf(*setup_.tracer, rays, k);
-      setup_.shader->prefetchTriangle(out.hits[i]);
+      setup_.shader->prefetch(out.hits[i]);
       if (rays.valid[k] == 0) {
         out.hits[i].t = -1.0F;  // no ray at all: black
       }
@@ -136,7 +138,7 @@ Eigen::Vector3f FrameTracer::shadePixel(const SurfaceHit* hits, const Eigen::Vec
     std::array<const SurfaceHit*, kMaxSamples> group{&hits[i]};
     std::array<const Eigen::Vector3f*, kMaxSamples> rays{&directions[i]};
     int count = 1;
-    const auto material = shader.triangleOf(hits[i], moment).material;
+    const auto material = shader.materialIndex(hits[i], moment);
     const Eigen::Vector3f& n = hits[i].geometric_normal;
     for (int j = i + 1; j < samples_; ++j) {
       if (hits[j].triangle == kNoTriangle || hits[j].object != hits[i].object) {
@@ -145,7 +147,7 @@ Eigen::Vector3f FrameTracer::shadePixel(const SurfaceHit* hits, const Eigen::Vec
       if (hits[j].triangle != hits[i].triangle) {
         const Eigen::Vector3f& m = hits[j].geometric_normal;
         const float dot = n.dot(m);
-        if (shader.triangleOf(hits[j], moment).material != material ||
+        if (shader.materialIndex(hits[j], moment) != material ||
             dot * dot < 0.97F * n.squaredNorm() * m.squaredNorm()) {
           continue;
         }
@@ -173,49 +175,58 @@ void FrameTracer::shadeTile(int tile, const TileSamples& in, Radiance& out,
                             ReflectionBuffer* mirror) const {
   const int left = tile % table_.tilesX() * kTile;
   const int top = tile / table_.tilesX() * kTile;
-  for (int i = 0; i < kTilePixels * samples_; ++i) {
-    setup_.shader->prefetchVertices(in.hits[static_cast<std::size_t>(i)]);
-  }
-  thread_local std::vector<MirrorRay> floor;
+  thread_local std::array<std::vector<MirrorRay>, kMirrorPlaces> floor;
   thread_local std::vector<MirrorRay> other;
-  floor.clear();
+  for (std::vector<MirrorRay>& rays : floor) {
+    rays.clear();
+  }
   other.clear();
-  for (int y = top; y < std::min(top + kTile, out.height); ++y) {
-    for (int x = left; x < std::min(left + kTile, out.width); ++x) {
-      const int first = ((y - top) * kTile + x - left) * samples_;
-      const std::size_t pixel = static_cast<std::size_t>(y) * out.width + x;
-      MirrorSource main;
-      out.pixels[pixel] = shadePixel(in.hits.data() + first, in.directions.data() + first,
-                                     table_.spread(x, y), main);
-      if (main.weight <= 0.0F || mirror == nullptr) {
-        continue;
-      }
-      int place = 0;
-      const MirrorDensity density =
-          samples_ == 1 && main.weight < kFaint ? MirrorDensity::kEighth : MirrorDensity::kQuarter;
-      if (main.surface.is_floor) {
-        mirror->weights[pixel] = main.weight;
-        place = mirrorPlace(density, x, y);
-        if (place < 0) {
-          continue;
-        }
-      }
-      MirrorRay ray = makeMirrorRay(main.surface, main.direction, main.weight, density, place);
-      ray.pixel = static_cast<std::uint32_t>(pixel);
-      (ray.from_floor ? floor : other).push_back(ray);
+  // In blocks: sixteen rays that follow each other then run alike.
+  for (int i = 0; i < kTilePixels; ++i) {
+    const int block = i / (kBlock * kBlock);
+    const int in_x = block % (kTile / kBlock) * kBlock + i % kBlock;
+    const int in_y = block / (kTile / kBlock) * kBlock + i / kBlock % kBlock;
+    const int x = left + in_x;
+    const int y = top + in_y;
+    if (x >= out.width || y >= out.height) {
+      continue;
+    }
+    const int first = (in_y * kTile + in_x) * samples_;
+    const std::size_t pixel = static_cast<std::size_t>(y) * out.width + x;
+    MirrorSource main;
+    out.pixels[pixel] =
+        shadePixel(in.hits.data() + first, in.directions.data() + first, table_.spread(x, y), main);
+    if (main.weight <= 0.0F || mirror == nullptr) {
+      continue;
+    }
+    if (!main.surface.is_floor) {
+      other.push_back(
+          makeMirrorRay(main.surface, main.direction, main.weight, MirrorDensity::kQuarter, 0));
+      other.back().pixel = static_cast<std::uint32_t>(pixel);
+      continue;
+    }
+    mirror->weights[pixel] = main.weight;
+    const MirrorDensity density =
+        samples_ == 1 && main.weight < kFaint ? MirrorDensity::kEighth : MirrorDensity::kQuarter;
+    const int place = mirrorPlace(density, x, y);
+    if (place >= 0) {
+      std::vector<MirrorRay>& rays = floor[static_cast<std::size_t>(place)];
+      rays.push_back(makeMirrorRay(main.surface, main.direction, main.weight, density, place));
+      rays.back().pixel = static_cast<std::uint32_t>(mirror->slot(x, y));
     }
   }
   if (mirror != nullptr) {
-    traceMirrors(tile, floor, other, out, *mirror);
+    // Rays of one place of the pattern run alike: side by side they cost half.
+    for (std::size_t place = 1; place < floor.size(); ++place) {
+      floor[0].insert(floor[0].end(), floor[place].begin(), floor[place].end());
+    }
+    traceMirrors(tile, floor[0], other, out, *mirror);
   }
 }
 
-void FrameTracer::traceMirrors(int tile, std::vector<MirrorRay>& floor,
+void FrameTracer::traceMirrors(int tile, const std::vector<MirrorRay>& floor,
                                const std::vector<MirrorRay>& other, Radiance& out,
                                ReflectionBuffer& mirror) const {
-  // Rays of one place of the pattern run alike: side by side they cost half.
-  std::stable_sort(floor.begin(), floor.end(),
-                   [](const MirrorRay& a, const MirrorRay& b) { return a.place < b.place; });
   if (!floor.empty()) {
     traceFloorMirror(setup_, movingIn(tile, true), floor.data(), static_cast<int>(floor.size()),
                      mirror);

@@ -13,22 +13,26 @@ namespace parkade::sim {
 namespace {
 
 constexpr float kFar = 1.0e4F;
-constexpr float kCoatBlur = 0.2F;       // roughness: a lone ray per pixel must not sparkle
-constexpr float kSteepest = 0.3F;       // slope down to which a coat's image of lamps widens
-constexpr float kFloorNear = 5e-4F;     // m: closer than other rays start, or walls leak
-constexpr float kLampRoom = 0.4F;       // m: what hangs this far below the lamps hides none
-constexpr float kMirrorSpread = 0.01F;  // rad: mirror images of textures are a little soft
+constexpr float kCoatBlur = 0.2F;    // roughness: a lone ray per pixel must not sparkle
+constexpr float kSteepest = 0.3F;    // slope down to which a coat's image of lamps widens
+constexpr float kFloorNear = 5e-4F;  // m: closer than other rays start, or walls leak
+constexpr float kLampRoom = 0.4F;    // m: what hangs this far below the lamps hides none
+// rad: mirror images of textures are a little soft, in floors, which mean over a lobe, more so.
+constexpr float kMirrorSpread = 0.01F;
+constexpr float kFloorMirrorSpread = 0.03F;
 
 constexpr int kPattern = 4;  // pixels a side
 
 constexpr int raysOf(MirrorDensity density) {
-  return density == MirrorDensity::kHalf ? 8 : density == MirrorDensity::kQuarter ? 4 : 2;
+  return density == MirrorDensity::kQuarter ? 4 : 2;
 }
+
+using Lobe = std::array<Eigen::Vector2f, kMirrorPlaces>;
 
 /// Slopes (microfacet normal against the mean normal) for the places of the pattern: GGX with unit
 /// width, stratified; the widest tail is left out.
-std::array<Eigen::Vector2f, 8> makeLobe(MirrorDensity density) {
-  std::array<Eigen::Vector2f, 8> pattern;
+Lobe makeLobe(MirrorDensity density) {
+  Lobe pattern;
   const int rays = raysOf(density);
   for (int n = 0; n < rays; ++n) {
     const float u = 0.9F * (static_cast<float>(n) + 0.5F) / static_cast<float>(rays);
@@ -40,27 +44,33 @@ std::array<Eigen::Vector2f, 8> makeLobe(MirrorDensity density) {
 }
 
 const Eigen::Vector2f& lobeSlope(MirrorDensity density, int place) {
-  static const std::array<std::array<Eigen::Vector2f, 8>, 3> kLobes{
-      makeLobe(MirrorDensity::kHalf), makeLobe(MirrorDensity::kQuarter),
-      makeLobe(MirrorDensity::kEighth)};
+  static const std::array<Lobe, 2> kLobes{makeLobe(MirrorDensity::kQuarter),
+                                          makeLobe(MirrorDensity::kEighth)};
   return kLobes[static_cast<std::size_t>(density)][static_cast<std::size_t>(place)];
 }
 
-/// Weights of two 4-pixel means, one after the other.
-constexpr std::array<float, 7> kTent{1, 2, 3, 4, 3, 2, 1};
+/// Two 4-pixel means, one after the other, weigh neighbours by 1, 2, 3, 4, 3, 2, 1. Only even
+/// places hold rays: from an even place those 2 away count, from an odd one those 1 and 3 away.
+/// step: between neighbours in at, whose first counts for the place.
+Eigen::Vector4f tentSum(const Eigen::Vector4f* at, std::ptrdiff_t step, bool odd) {
+  if (odd) {
+    return at[-step] + 3.0F * at[0] + 3.0F * at[step] + at[2 * step];
+  }
+  return 2.0F * at[-step] + 4.0F * at[0] + 2.0F * at[step];
+}
 
 }  // namespace
 
 void ReflectionBuffer::reset(int w, int h) {
   width = w;
   height = h;
-  incoming.assign(static_cast<std::size_t>(w) * h, Eigen::Vector4f::Zero());
-  weights.assign(incoming.size(), 0.0F);
+  stride = (w + 1) / 2 + 3;
+  incoming.assign(static_cast<std::size_t>(stride) * ((h + 1) / 2), Eigen::Vector4f::Zero());
+  weights.assign(static_cast<std::size_t>(w) * h, 0.0F);
 }
 
 int mirrorPlace(MirrorDensity density, int x, int y) {
-  // Bayer's matrix: its first eight places lie like a chess board's fields, the first four on every
-  // second pixel of every second row.
+  // Bayer's matrix: its first four places lie on every second pixel of every second row.
   constexpr std::array<int, 16> kBayer{0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
   const int place = kBayer[static_cast<std::size_t>(y % kPattern * kPattern + x % kPattern)];
   return place < raysOf(density) ? place : -1;
@@ -104,9 +114,9 @@ namespace {
 /// Traces rays and calls use(ray, radiance) for each. Lamps are too small for a few rays: their
 /// image comes from their map, where a ray gets as far as they are high.
 template <class Use>
-void traceRays(const FrameSetup& setup, RTCScene moving, float near_limit, const MirrorRay* rays,
-               int count, const Use& use) {
-  // In three passes, for what a hit's shading reads takes long to come from memory.
+void traceRays(const FrameSetup& setup, RTCScene moving, float near_limit, float spread,
+               const MirrorRay* rays, int count, const Use& use) {
+  // In two passes, for what a hit's shading reads takes long to come from memory.
   thread_local std::vector<SurfaceHit> hits;
   hits.resize(static_cast<std::size_t>(count));
   RayPacket packet;
@@ -121,11 +131,8 @@ void traceRays(const FrameSetup& setup, RTCScene moving, float near_limit, const
     for (int k = 0; k < lanes; ++k) {
       SurfaceHit& hit = hits[static_cast<std::size_t>(begin + k)];
       hit = hitOf(*setup.tracer, packet, k);
-      setup.shader->prefetchTriangle(hit);
+      setup.shader->prefetch(hit);
     }
-  }
-  for (const SurfaceHit& hit : hits) {
-    setup.shader->prefetchVertices(hit);
   }
   const float lamps_height = setup.shader->lamps().height() - kLampRoom;
   for (int k = 0; k < count; ++k) {
@@ -138,7 +145,7 @@ void traceRays(const FrameSetup& setup, RTCScene moving, float near_limit, const
     const SurfaceHit* one = &hit;
     const Eigen::Vector3f* direction = &ray.direction;
     Surface surface;
-    setup.shader->shade(&one, &direction, 1, ray.origin, kMirrorSpread, 1, *setup.moment, surface);
+    setup.shader->shade(&one, &direction, 1, ray.origin, spread, 1, *setup.moment, surface);
     if (hit.t * ray.direction.z() > lamps_height - ray.origin.z()) {
       surface.radiance += setup.shader->lamps().glow(ray.origin, ray.lobe_direction,
                                                      ray.lobe_cosine, ray.lobe_roughness);
@@ -151,14 +158,14 @@ void traceRays(const FrameSetup& setup, RTCScene moving, float near_limit, const
 
 void traceFloorMirror(const FrameSetup& setup, RTCScene moving, const MirrorRay* rays, int count,
                       ReflectionBuffer& floor) {
-  traceRays(setup, moving, kFloorNear, rays, count,
+  traceRays(setup, moving, kFloorNear, kFloorMirrorSpread, rays, count,
             [&](const MirrorRay& ray, const Eigen::Vector3f& radiance) {
               floor.incoming[ray.pixel] << radiance.x(), radiance.y(), radiance.z(), 1.0F;
             });
 }
 
 void traceMirror(const FrameSetup& setup, const MirrorRay* rays, int count, Radiance& out) {
-  traceRays(setup, setup.moment->scene.get(), kNear, rays, count,
+  traceRays(setup, setup.moment->scene.get(), kNear, kMirrorSpread, rays, count,
             [&](const MirrorRay& ray, const Eigen::Vector3f& radiance) {
               out.pixels[ray.pixel] += ray.weight * radiance;
             });
@@ -167,30 +174,27 @@ void traceMirror(const FrameSetup& setup, const MirrorRay* rays, int count, Radi
 void addFloorReflections(ReflectionBuffer& floor, int threads, Radiance& out) {
   const int width = floor.width;
   const int height = floor.height;
+  const int rows = (height + 1) / 2;
+  // A row of zeros above, two below.
   std::vector<Eigen::Vector4f>& across = floor.across;
-  across.resize(floor.incoming.size());
-  parallelFor(threads, static_cast<std::size_t>(height), [&](std::size_t y) {
-    const Eigen::Vector4f* row = floor.incoming.data() + y * width;
+  across.resize(static_cast<std::size_t>(rows + 3) * width);
+  std::fill_n(across.begin(), width, Eigen::Vector4f::Zero());
+  std::fill_n(across.end() - 2 * width, 2 * width, Eigen::Vector4f::Zero());
+  parallelFor(threads, static_cast<std::size_t>(rows), [&](std::size_t row) {
+    const Eigen::Vector4f* from = floor.incoming.data() + row * floor.stride + 1;
+    Eigen::Vector4f* to = across.data() + (row + 1) * width;
     for (int x = 0; x < width; ++x) {
-      Eigen::Vector4f sum = Eigen::Vector4f::Zero();
-      for (int k = std::max(-3, -x); k <= std::min(3, width - 1 - x); ++k) {
-        sum += kTent[static_cast<std::size_t>(k + 3)] * row[x + k];
-      }
-      across[y * width + x] = sum;
+      to[x] = tentSum(from + x / 2, 1, x % 2 != 0);
     }
   });
-  parallelFor(threads, static_cast<std::size_t>(height), [&](std::size_t row) {
-    const int y = static_cast<int>(row);
+  parallelFor(threads, static_cast<std::size_t>(height), [&](std::size_t y) {
+    const Eigen::Vector4f* from = across.data() + (y / 2 + 1) * width;
     for (int x = 0; x < width; ++x) {
-      const std::size_t pixel = row * width + x;
+      const std::size_t pixel = y * width + x;
       if (floor.weights[pixel] <= 0.0F) {
         continue;
       }
-      Eigen::Vector4f sum = Eigen::Vector4f::Zero();
-      for (int k = std::max(-3, -y); k <= std::min(3, height - 1 - y); ++k) {
-        sum += kTent[static_cast<std::size_t>(k + 3)] *
-               across[static_cast<std::size_t>(y + k) * width + x];
-      }
+      const Eigen::Vector4f sum = tentSum(from + x, width, y % 2 != 0);
       if (sum.w() > 0.0F) {
         out.pixels[pixel] += floor.weights[pixel] / sum.w() * sum.head<3>();
       }

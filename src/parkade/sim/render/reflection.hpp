@@ -14,8 +14,8 @@ namespace parkade::sim {
 struct MirrorRay {
   Eigen::Vector3f origin = Eigen::Vector3f::Zero();
   Eigen::Vector3f direction = Eigen::Vector3f::UnitZ();
-  float weight = 0.0F;  ///< reflectance times the share of the pixel; 0: no ray
-  std::uint32_t pixel = 0;
+  float weight = 0.0F;      ///< reflectance times the share of the pixel; 0: no ray
+  std::uint32_t pixel = 0;  ///< row by row; of floors: the place in ReflectionBuffer::incoming
   bool from_floor = false;
   std::uint8_t place = 0;  ///< in the floor's pattern
   // The lobe in which lamps show, if they are in sight: see LampMap::glow.
@@ -24,22 +24,30 @@ struct MirrorRay {
   float lobe_roughness = 1.0F;
 };
 
-/// What the floor mirrors, before it is averaged over neighbouring pixels.
+/// What the floor mirrors, before it is averaged over neighbouring pixels. Only every second pixel
+/// of every second row sends rays: the buffer has room for those alone, and a border of zeros.
 struct ReflectionBuffer {
-  int width = 0;
-  int height = 0;
+  int width = 0;                          ///< of the picture
+  int height = 0;                         ///< of the picture
+  int stride = 0;                         ///< of incoming
   std::vector<Eigen::Vector4f> incoming;  ///< radiance; w is 1 where a floor pixel sent a ray
-  std::vector<float> weights;             ///< reflectance per pixel
+  std::vector<float> weights;             ///< reflectance per pixel of the picture
   std::vector<Eigen::Vector4f> across;    ///< scratch: averaged along rows
   void reset(int w, int h);
+  /// Where the ray of a pixel, both of whose coordinates are even, belongs in incoming.
+  [[nodiscard]] std::size_t slot(int x, int y) const {
+    return static_cast<std::size_t>(y / 2) * stride + x / 2 + 1;
+  }
 };
 
 /// Which of the 4 x 4 pixels of the pattern send floor mirror rays.
 enum class MirrorDensity : std::uint8_t {
-  kHalf,     ///< 8, like the black fields of a chess board
   kQuarter,  ///< 4, every second of every second row
   kEighth,   ///< 2, on a diagonal
 };
+
+/// Places of the densest pattern.
+inline constexpr int kMirrorPlaces = 4;
 
 /// The place of a pixel in the order of those that send a floor mirror ray, or -1.
 int mirrorPlace(MirrorDensity density, int x, int y);

@@ -17,8 +17,7 @@ namespace {
 
 TEST(MirrorPlace, SpreadsOverThePixelsEvenly) {
   for (const auto& [density, rays] :
-       {std::pair{MirrorDensity::kHalf, 8}, std::pair{MirrorDensity::kQuarter, 4},
-        std::pair{MirrorDensity::kEighth, 2}}) {
+       {std::pair{MirrorDensity::kQuarter, 4}, std::pair{MirrorDensity::kEighth, 2}}) {
     std::set<int> places;
     for (int y = 0; y < 4; ++y) {
       for (int x = 0; x < 4; ++x) {
@@ -26,7 +25,7 @@ TEST(MirrorPlace, SpreadsOverThePixelsEvenly) {
         EXPECT_EQ(place, mirrorPlace(density, x + 8, y + 12)) << "repeats every 4 pixels";
         if (place >= 0) {
           places.insert(place);
-          EXPECT_EQ((x + y) % 2, 0) << "no two neighbours";
+          EXPECT_TRUE(x % 2 == 0 && y % 2 == 0) << "the buffer has room for no others";
         }
       }
     }

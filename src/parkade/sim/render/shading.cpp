@@ -15,14 +15,13 @@ constexpr int kMaxPoints = 4 * kMaxTaps;  // of one pixel
 constexpr float kSoftness = 2.0F;   // diameter of a sample's footprint over the spacing of samples
 constexpr float kDullFrom = 0.75F;  // roughness above which no mirror image is left
 
-/// Of a BakedPoint or ShadeVertex.
-template <class Point>
-float flickerFactor(const Point& point, const Moment& moment) {
-  if (point.flicker_lamp == kNoLamp) {
+/// Of light in which a flickering lamp has a share (of 65535).
+float flickerFactor(std::uint16_t lamp, std::uint16_t share, const Moment& moment) {
+  if (lamp == kNoLamp) {
     return 1.0F;
   }
-  const float brightness = moment.lamp_brightness[point.flicker_lamp];
-  return 1.0F + (brightness - 1.0F) * static_cast<float>(point.flicker_share) * (1.0F / 65535.0F);
+  const float brightness = moment.lamp_brightness[lamp];
+  return 1.0F + (brightness - 1.0F) * static_cast<float>(share) * (1.0F / 65535.0F);
 }
 
 }  // namespace
@@ -47,15 +46,22 @@ Shader::Shader(const Scene& scene, const StaticTracer& tracer, const BakedLight&
   for (const Texture& texture : scene.textures) {
     textures_.emplace_back(texture);
   }
-  vertices_.resize(mesh_.positions.size());
-  for (std::size_t i = 0; i < vertices_.size(); ++i) {
-    const BakedPoint& baked = light.vertices[i];
-    ShadeVertex& vertex = vertices_[i];
-    vertex.lux.head<3>() = baked.lux;
-    vertex.normal.head<3>() = mesh_.normals[i];
-    vertex.uv = mesh_.uvs[i];
-    vertex.flicker_lamp = baked.flicker_lamp;
-    vertex.flicker_share = baked.flicker_share;
+  triangles_.resize(mesh_.triangles.size());
+  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    const RenderTriangle& source = mesh_.triangles[i];
+    ShadeTriangle& t = triangles_[i];
+    t.texels_per_metre = source.texels_per_metre;
+    t.material = source.material;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = source.v[k];
+      const BakedPoint& baked = light.vertices[v];
+      float* const values = t.values.data();
+      Eigen::Map<Eigen::Vector3f>(values + 3 * k) = baked.lux;
+      Eigen::Map<Eigen::Vector3f>(values + ShadeTriangle::kNormals + 3 * k) = mesh_.normals[v];
+      Eigen::Map<Eigen::Vector2f>(values + ShadeTriangle::kUvs + 2 * k) = mesh_.uvs[v];
+      t.flicker_lamp[k] = baked.flicker_lamp;
+      t.flicker_share[k] = baked.flicker_share;
+    }
   }
   const auto lux = static_cast<float>(scene.target_floor_lux);
   for (const Material& material : scene.materials) {
@@ -105,73 +111,71 @@ Eigen::Vector3f Shader::floorLux(float x, float y, const Moment& moment) const {
   } else {
     for (std::size_t i = 0; i < 4; ++i) {
       const BakedPoint& point = light_.floor[cells[i]];
-      lux += weights[i] * flickerFactor(point, moment) * point.lux;
+      lux +=
+          weights[i] * flickerFactor(point.flicker_lamp, point.flicker_share, moment) * point.lux;
     }
   }
   return lux;
 }
 
-void Shader::surfaceAt(const SurfaceHit& hit, const RenderTriangle& t, const Moment& moment,
-                       Eigen::Vector3f& normal, Eigen::Vector3f& lux) const {
-  const float w = 1.0F - hit.u - hit.v;
-  if (hit.object >= 0) {
-    const PlacedObject& object = moment.objects[static_cast<std::size_t>(hit.object)];
-    const auto& normals = object.shape->mesh.normals;
-    normal = object.R_world_object *
-             (w * normals[t.v[0]] + hit.u * normals[t.v[1]] + hit.v * normals[t.v[2]]);
-    lux = w * object.vertex_lux[t.v[0]] + hit.u * object.vertex_lux[t.v[1]] +
-          hit.v * object.vertex_lux[t.v[2]];
-    return;
-  }
-  const ShadeVertex& a = vertices_[t.v[0]];
-  const ShadeVertex& b = vertices_[t.v[1]];
-  const ShadeVertex& c = vertices_[t.v[2]];
-  float wa = w;
+void Shader::surfaceAt(const SurfaceHit& hit, const Moment& moment, Eigen::Vector3f& normal,
+                       Eigen::Vector3f& lux) const {
+  float wa = 1.0F - hit.u - hit.v;
   float wb = hit.u;
   float wc = hit.v;
-  const Eigen::Vector4f n = wa * a.normal + wb * b.normal + wc * c.normal;
-  if (!moment.lamp_brightness.empty()) {
-    wa *= flickerFactor(a, moment);
-    wb *= flickerFactor(b, moment);
-    wc *= flickerFactor(c, moment);
+  if (hit.object >= 0) {
+    const PlacedObject& object = moment.objects[static_cast<std::size_t>(hit.object)];
+    const auto& v = object.shape->mesh.triangles[hit.triangle].v;
+    const auto& normals = object.shape->mesh.normals;
+    normal = object.R_world_object * (wa * normals[v[0]] + wb * normals[v[1]] + wc * normals[v[2]]);
+    lux =
+        wa * object.vertex_lux[v[0]] + wb * object.vertex_lux[v[1]] + wc * object.vertex_lux[v[2]];
+    return;
   }
-  const Eigen::Vector4f e = wa * a.lux + wb * b.lux + wc * c.lux;
+  const ShadeTriangle& t = triangles_[hit.triangle];
+  const Eigen::Vector4f n = wa * t.normal(0) + wb * t.normal(1) + wc * t.normal(2);
+  if (!moment.lamp_brightness.empty()) {
+    wa *= flickerFactor(t.flicker_lamp[0], t.flicker_share[0], moment);
+    wb *= flickerFactor(t.flicker_lamp[1], t.flicker_share[1], moment);
+    wc *= flickerFactor(t.flicker_lamp[2], t.flicker_share[2], moment);
+  }
+  const Eigen::Vector4f e = wa * t.lux(0) + wb * t.lux(1) + wc * t.lux(2);
   normal = n.head<3>();
   lux = e.head<3>();
 }
 
-Eigen::Vector2f Shader::uvAt(const SurfaceHit& hit, const RenderTriangle& t,
-                             const RenderMesh& mesh) const {
+Shader::TexturePlace Shader::texturePlaceAt(const SurfaceHit& hit, const Moment& moment) const {
   const float w = 1.0F - hit.u - hit.v;
   if (hit.object < 0) {
-    return w * vertices_[t.v[0]].uv + hit.u * vertices_[t.v[1]].uv + hit.v * vertices_[t.v[2]].uv;
+    const ShadeTriangle& t = triangles_[hit.triangle];
+    return {w * t.uv(0) + hit.u * t.uv(1) + hit.v * t.uv(2), t.texels_per_metre};
   }
-  return w * mesh.uvs[t.v[0]] + hit.u * mesh.uvs[t.v[1]] + hit.v * mesh.uvs[t.v[2]];
+  const RenderMesh& mesh = moment.objects[static_cast<std::size_t>(hit.object)].shape->mesh;
+  const RenderTriangle& t = mesh.triangles[hit.triangle];
+  return {w * mesh.uvs[t.v[0]] + hit.u * mesh.uvs[t.v[1]] + hit.v * mesh.uvs[t.v[2]],
+          t.texels_per_metre};
 }
 
 Eigen::Vector3f Shader::textureAt(const SurfaceHit* const* hits, int count,
-                                  const MipTexture& texture, float spread,
-                                  const Moment& moment) const {
-  const RenderMesh& mesh = meshOf(*hits[0], moment);
+                                  const MipTexture& texture, const TexturePlace& first,
+                                  float spread, const Moment& moment) const {
   const bool one_triangle = std::all_of(
       hits, hits + count, [&](const SurfaceHit* h) { return h->triangle == hits[0]->triangle; });
-  const RenderTriangle& first = mesh.triangles[hits[0]->triangle];
   const float texels = spread * hits[0]->t * first.texels_per_metre;
   constexpr float kMagnified = 0.4F;
   if (count == 1 || (one_triangle && texels < kMagnified)) {
     // Within one texel the mean of the samples is the sample at their mean.
-    Eigen::Vector2f middle = Eigen::Vector2f::Zero();
-    for (int i = 0; i < count; ++i) {
-      middle += uvAt(*hits[i], first, mesh);
+    Eigen::Vector2f middle = first.uv;
+    for (int i = 1; i < count; ++i) {
+      middle += texturePlaceAt(*hits[i], moment).uv;
     }
     middle /= static_cast<float>(count);
     return texture.sample(middle.x(), middle.y(), texels);
   }
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   for (int i = 0; i < count; ++i) {
-    const RenderTriangle& t = mesh.triangles[hits[i]->triangle];
-    const Eigen::Vector2f uv = uvAt(*hits[i], t, mesh);
-    sum += texture.sample(uv.x(), uv.y(), spread * hits[i]->t * t.texels_per_metre);
+    const TexturePlace place = i == 0 ? first : texturePlaceAt(*hits[i], moment);
+    sum += texture.sample(place.uv.x(), place.uv.y(), spread * hits[i]->t * place.texels_per_metre);
   }
   return sum / static_cast<float>(count);
 }
@@ -247,18 +251,9 @@ void Shader::shade(const SurfaceHit* const* hits, const Eigen::Vector3f* const* 
                    int count, const Eigen::Vector3f& eye, float spread, int samples,
                    const Moment& moment, Surface& out) const {
   const SurfaceHit& hit = *hits[0];
-  const RenderMesh& mesh = meshOf(hit, moment);
-  const RenderTriangle& t = mesh.triangles[hit.triangle];
-  const ShadeMaterial& material = materials_[t.material];
-  const bool static_floor = material.is_floor && hit.object < 0;  // has a map of its light
+  const ShadeMaterial& material = materials_[materialIndex(hit, moment)];
   Eigen::Vector3f lux;
-  if (static_floor) {
-    out.normal = (1.0F - hit.u - hit.v) * vertices_[t.v[0]].normal.head<3>() +
-                 hit.u * vertices_[t.v[1]].normal.head<3>() +
-                 hit.v * vertices_[t.v[2]].normal.head<3>();
-  } else {
-    surfaceAt(hit, t, moment, out.normal, lux);
-  }
+  surfaceAt(hit, moment, out.normal, lux);
   out.normal.normalize();
   if (out.normal.dot(*directions[0]) > 0.0F) {
     out.normal = -out.normal;
@@ -276,12 +271,15 @@ void Shader::shade(const SurfaceHit* const* hits, const Eigen::Vector3f* const* 
   }
   Eigen::Vector3f albedo = material.albedo;
   Eigen::Vector3f emission = material.emission;
-  if (material.texture != nullptr && t.texels_per_metre > 0.0F) {
-    const float cosine = std::max(std::abs(directions[0]->dot(out.normal)), 0.1F);
-    const Eigen::Vector3f sum =
-        textureAt(hits, count, *material.texture, spread / std::sqrt(cosine), moment);
-    albedo = albedo.cwiseProduct(sum);
-    emission = emission.cwiseProduct(sum);
+  if (material.texture != nullptr) {
+    const TexturePlace first = texturePlaceAt(hit, moment);
+    if (first.texels_per_metre > 0.0F) {
+      const float cosine = std::max(std::abs(directions[0]->dot(out.normal)), 0.1F);
+      const Eigen::Vector3f sum =
+          textureAt(hits, count, *material.texture, first, spread / std::sqrt(cosine), moment);
+      albedo = albedo.cwiseProduct(sum);
+      emission = emission.cwiseProduct(sum);
+    }
   }
   out.radiance = albedo.cwiseProduct(lux) * kInvPi + emission;
   if (!moment.lamp_brightness.empty() && material.emission.x() > 0.0F) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -36,14 +37,30 @@ struct ShadeMaterial {
   bool is_floor = false;
 };
 
-/// What shading reads of a vertex of the static mesh, in one place: fewer cache misses.
-struct alignas(16) ShadeVertex {
-  Eigen::Vector4f lux = Eigen::Vector4f::Zero();     ///< w: unused
-  Eigen::Vector4f normal = Eigen::Vector4f::Zero();  ///< w: 0
-  Eigen::Vector2f uv = Eigen::Vector2f::Zero();
-  std::uint16_t flicker_lamp = kNoLamp;
-  std::uint16_t flicker_share = 0;  ///< of 65535
+/// What shading reads of a triangle of the static mesh, in two neighbouring cache lines: its
+/// corners' light and normals would else come from places far apart.
+struct alignas(64) ShadeTriangle {
+  static constexpr std::size_t kNormals = 9;
+  static constexpr std::size_t kUvs = 18;
+  /// Per corner: illuminance (3 each), normal (3 each), texture coordinates (2 each).
+  std::array<float, 24> values{};
+  float texels_per_metre = 0.0F;
+  std::uint16_t material = 0;
+  std::array<std::uint16_t, 3> flicker_lamp{kNoLamp, kNoLamp, kNoLamp};
+  std::array<std::uint16_t, 3> flicker_share{};  ///< of 65535
+
+  /// Three values that belong to a corner; the fourth is whatever follows them.
+  [[nodiscard]] Eigen::Map<const Eigen::Vector4f> lux(std::size_t corner) const {
+    return Eigen::Map<const Eigen::Vector4f>(values.data() + 3 * corner);
+  }
+  [[nodiscard]] Eigen::Map<const Eigen::Vector4f> normal(std::size_t corner) const {
+    return Eigen::Map<const Eigen::Vector4f>(values.data() + kNormals + 3 * corner);
+  }
+  [[nodiscard]] Eigen::Map<const Eigen::Vector2f> uv(std::size_t corner) const {
+    return Eigen::Map<const Eigen::Vector2f>(values.data() + kUvs + 2 * corner);
+  }
 };
+static_assert(sizeof(ShadeTriangle) == 128);
 
 /// A surface ready for its final sum.
 struct Surface {
@@ -72,18 +89,18 @@ class Shader {
     return meshOf(hit, moment).triangles[hit.triangle];
   }
 
-  /// Fetches what shade() will read of a hit: the triangle, and once that is there, its corners.
-  /// Hits of a tile shaded much later wait less for memory.
-  void prefetchTriangle(const SurfaceHit& hit) const {
-    if (hit.object < 0 && hit.triangle != kNoTriangle) {
-      __builtin_prefetch(&mesh_.triangles[hit.triangle]);
-    }
+  /// Index of a hit's material.
+  [[nodiscard]] std::uint16_t materialIndex(const SurfaceHit& hit, const Moment& moment) const {
+    return hit.object < 0 ? triangles_[hit.triangle].material : triangleOf(hit, moment).material;
   }
-  void prefetchVertices(const SurfaceHit& hit) const {
+
+  /// Fetches what shade() will read of a hit. Hits of a tile shaded much later wait less for
+  /// memory.
+  void prefetch(const SurfaceHit& hit) const {
     if (hit.object < 0 && hit.triangle != kNoTriangle) {
-      for (const std::uint32_t v : mesh_.triangles[hit.triangle].v) {
-        __builtin_prefetch(&vertices_[v]);
-      }
+      const auto* at = reinterpret_cast<const char*>(&triangles_[hit.triangle]);
+      __builtin_prefetch(at);
+      __builtin_prefetch(at + 64);
     }
   }
 
@@ -114,14 +131,18 @@ class Shader {
   }
   [[nodiscard]] Eigen::Vector3f floorLux(float x, float y, const Moment& moment) const;
   /// Normal and illuminance at a hit, not unit and not turned towards the viewer.
-  void surfaceAt(const SurfaceHit& hit, const RenderTriangle& t, const Moment& moment,
-                 Eigen::Vector3f& normal, Eigen::Vector3f& lux) const;
-  [[nodiscard]] Eigen::Vector2f uvAt(const SurfaceHit& hit, const RenderTriangle& t,
-                                     const RenderMesh& mesh) const;
-  /// The mean of a texture over hits of one object, each filtered over spread times its distance.
+  void surfaceAt(const SurfaceHit& hit, const Moment& moment, Eigen::Vector3f& normal,
+                 Eigen::Vector3f& lux) const;
+  struct TexturePlace {
+    Eigen::Vector2f uv;
+    float texels_per_metre = 0.0F;  ///< 0: untextured
+  };
+  [[nodiscard]] TexturePlace texturePlaceAt(const SurfaceHit& hit, const Moment& moment) const;
+  /// The mean of a texture over hits of one object, each filtered over spread times its distance;
+  /// first: the place of the first.
   [[nodiscard]] Eigen::Vector3f textureAt(const SurfaceHit* const* hits, int count,
-                                          const MipTexture& texture, float spread,
-                                          const Moment& moment) const;
+                                          const MipTexture& texture, const TexturePlace& first,
+                                          float spread, const Moment& moment) const;
   void shadeFloor(const SurfaceHit* const* hits, const Eigen::Vector3f* const* directions,
                   int count, const Eigen::Vector3f& eye, float spread, int samples,
                   const Moment& moment, Surface& out) const;
@@ -131,7 +152,7 @@ class Shader {
   const RenderMesh& mesh_;
   const BakedLight& light_;
   LampMap lamps_;
-  std::vector<ShadeVertex> vertices_;  ///< of the static mesh
+  std::vector<ShadeTriangle> triangles_;  ///< of the static mesh
   std::vector<MipTexture> textures_;
   std::vector<ShadeMaterial> materials_;
   Eigen::Vector3f background_;
