@@ -24,7 +24,7 @@ ROOMS = {
     "tracking": (3, ["types", "camera"]),
     "vio": (3, ["types", "camera", "imu"]),
     "bev": (3, ["types", "camera"]),
-    "semantics": (3, ["types"]),
+    "semantics": (3, ["types", "camera"]),
     "fusion": (3, ["types", "imu"]),
     "mapping": (3, ["types"]),
     "localization": (4, ["mapping"]),

@@ -16,6 +16,7 @@
 #include "parkade/cli/semantic_garages.hpp"
 #include "parkade/cli/semantic_samples.hpp"
 #include "parkade/cli/sim_record.hpp"
+#include "parkade/cli/zone_text_samples.hpp"
 #include "parkade/core/progress.hpp"
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
@@ -97,6 +98,10 @@ Status writeSample(const SemanticSampler& sampler, const SemanticSample& sample,
     labels = sampler.cameraLabels(sample, camera);
     labels.setTo(kNotSeen, sampler.bodyMask(camera) == 0);
     if (status) status = writeImage(fmt::format("{}_raw{}_labels.png", stem, k), labels, png);
+    if (status) {
+      status = writeZoneTexts(sampler, sample, camera, sampler.cameraLabels(sample, camera),
+                              fmt::format("{}_raw{}", stem, k));
+    }
   }
   return status;
 }

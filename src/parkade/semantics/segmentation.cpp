@@ -6,37 +6,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <opencv2/core/utils/logger.hpp>
-#include <opencv2/dnn.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "parkade/core/check.hpp"
 #include "parkade/semantics/label_decoding.hpp"
+#include "parkade/semantics/onnx_network.hpp"
 #include "parkade/semantics/paint_strokes.hpp"
 
 namespace parkade {
 namespace {
 
 constexpr int kMultiple = 32;  // sizes that a network of any size takes
-
-// OpenCV prints what it throws as well; the library prints nothing.
-class QuietOpenCv {
- public:
-  QuietOpenCv() : before_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
-  ~QuietOpenCv() { cv::utils::logging::setLogLevel(before_); }
-  QuietOpenCv(const QuietOpenCv&) = delete;
-  QuietOpenCv& operator=(const QuietOpenCv&) = delete;
-
- private:
-  cv::utils::logging::LogLevel before_;
-};
-
-// The first line of OpenCV's message, without its own version and source file.
-std::string shortMessage(const cv::Exception& error) {
-  std::string text = error.err.empty() ? error.what() : error.err;
-  return text.substr(0, text.find('\n'));
-}
 
 int roundUp(int value) {
   return (value + kMultiple - 1) / kMultiple * kMultiple;
@@ -71,22 +51,15 @@ Status SegmentationNetwork::Impl::forward(const cv::Mat& bgr) {
       }
     }
   }
-  try {
-    const QuietOpenCv quiet;
-    net.setInput(input);
-    logits = net.forward();
-  } catch (const cv::Exception& error) {
-    return Error{fmt::format("{}: the network does not take a picture of {} x {} px: {}",
-                             map.network, bgr.cols, bgr.rows, shortMessage(error))};
-  }
+  Result<cv::Mat> out = runOnnx(net, input, map.network);
+  if (!out) return out.error();
+  logits = std::move(out).value();
   return checkOutput(bgr.size());
 }
 
 Status SegmentationNetwork::Impl::checkOutput(const cv::Size& size) const {
   const int classes = static_cast<int>(map.classes.size());
-  std::string shape;
-  for (int i = 0; i < logits.dims; ++i)
-    shape += fmt::format("{}{}", i ? " x " : "", logits.size[i]);
+  const std::string shape = shapeOf(logits);
   if (logits.dims != 4 || logits.size[0] != 1 || logits.type() != CV_32F) {
     return Error{fmt::format(
         "{}: the network's output is {}; expected 1 x channels x height x width numbers",
@@ -136,20 +109,9 @@ Result<SegmentationNetwork> SegmentationNetwork::load(const std::string& class_m
   if (!map) return map.error();
   auto impl = std::make_unique<Impl>();
   impl->map = std::move(map).value();
-  std::error_code code;
-  if (!std::filesystem::is_regular_file(impl->map.network, code)) {
-    return Error{
-        fmt::format("{}: network: there is no file {}", class_map_path, impl->map.network)};
-  }
-  try {
-    const QuietOpenCv quiet;
-    impl->net = cv::dnn::readNetFromONNX(impl->map.network);
-    impl->net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
-    impl->net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
-  } catch (const cv::Exception& error) {
-    return Error{fmt::format("{}: OpenCV cannot read this ONNX file: {}", impl->map.network,
-                             shortMessage(error))};
-  }
+  Result<cv::dnn::Net> net = readOnnx(impl->map.network, class_map_path);
+  if (!net) return net.error();
+  impl->net = std::move(net).value();
   const Status status =
       impl->forward(cv::Mat(impl->map.height, impl->map.width, CV_8UC3, cv::Scalar::all(0)));
   if (!status) return status.error();

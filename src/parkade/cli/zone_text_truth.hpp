@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <opencv2/core/mat.hpp>
+#include <string>
+#include <vector>
+
+#include "parkade/cli/semantic_samples.hpp"
+
+namespace parkade::cli {
+
+/// A zone text on a face of a pillar, as one camera should see it.
+struct TrueZoneText {
+  std::string text;
+  double distance = 0.0;  ///< m, from the camera to the text's middle
+  double slant = 0.0;     ///< rad, between the face's normal and the line of sight
+  double in_sight = 0.0;  ///< share of its area that is in the picture and not hidden
+  double height_px = 0.0;
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();  ///< px
+};
+
+/// The zone texts that face a camera of a sample within `reach` metres, hidden ones too. labels:
+/// the camera's true labels.
+std::vector<TrueZoneText> trueZoneTexts(const SemanticSampler& sampler,
+                                        const SemanticSample& sample, int camera,
+                                        const cv::Mat& labels, double reach);
+
+/// The text whose middle lies in a quadrilateral of the picture (corners in order), the nearest to
+/// its middle; null where there is none.
+const TrueZoneText* textWithin(const std::vector<TrueZoneText>& texts,
+                               const std::array<Eigen::Vector2d, 4>& corners);
+
+/// Labels of the size that the view network gives, taken from full ones.
+cv::Mat atNetworkSize(const cv::Mat& labels);
+
+}  // namespace parkade::cli

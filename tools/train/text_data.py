@@ -1,0 +1,172 @@
+# SPDX-FileCopyrightText: 2026 The Parkade authors
+# SPDX-License-Identifier: Apache-2.0
+"""Faces of zone markers to learn reading from: rendered ones, and those that make_data.py wrote."""
+import csv
+import glob
+import os
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFilter, ImageFont
+
+from text_network import ALPHABET, HEIGHT, WIDTH
+
+LETTERS = ALPHABET[10:-1]
+FONTS = ["DejaVuSans-Bold", "DejaVuSansCondensed-Bold", "DejaVuSans", "DejaVuSansMono-Bold",
+         "LiberationSans-Bold", "LiberationSansNarrow-Bold", "LiberationSans-Regular",
+         "LiberationMono-Bold", "DejaVuSerif-Bold"]
+
+
+def fonts():
+    """The fonts of FONTS that are installed (Debian: fonts-dejavu, fonts-liberation)."""
+    paths = {os.path.splitext(os.path.basename(path))[0]: path
+             for path in glob.glob("/usr/share/fonts/truetype/*/*.ttf")}
+    found = [ImageFont.truetype(paths[name], 60) for name in FONTS if name in paths]
+    if not found:
+        raise SystemExit("no fonts found; install fonts-dejavu and fonts-liberation")
+    return found
+
+
+def random_text(rng):
+    """Mostly a letter with a number, as zones are named; also anything else."""
+    letter = LETTERS[rng.integers(len(LETTERS))]
+    number = str(rng.integers(1, 100) if rng.random() < 0.5 else rng.integers(1, 20))
+    kind = rng.random()
+    if kind < 0.3:
+        return letter + number
+    if kind < 0.45:
+        return f"{letter}-{number}"
+    if kind < 0.6:
+        return letter + number.zfill(2)
+    if kind < 0.75:
+        return number + letter
+    if kind < 0.8:
+        return letter + LETTERS[rng.integers(len(LETTERS))] + number
+    return "".join(ALPHABET[rng.integers(len(ALPHABET) - 1)] for _ in range(rng.integers(1, 5)))
+
+
+def plate(rng, text, font, size, back, ink):
+    """One face of size (width, height), four times as fine as the patch."""
+    width, height = size
+    face = Image.new("RGB", size, tuple(back))
+    if text:
+        box = font.getbbox(text, stroke_width=0)
+        word = Image.new("L", (box[2] - box[0] + 4, box[3] - box[1] + 4))
+        ImageDraw.Draw(word).text((2 - box[0], 2 - box[1]), text, font=font, fill=255,
+                                  stroke_width=int(rng.integers(0, 3)))
+        high = height * rng.uniform(0.38, 0.68)
+        wide = min(high * word.width / word.height * rng.uniform(0.8, 1.2), 0.88 * width)
+        high = min(high, wide * word.height / word.width * 1.3)
+        word = word.resize((max(2, int(wide)), max(2, int(high))))
+        at = (int((width - word.width) / 2 + rng.normal(0, 0.02) * width),
+              int((height - word.height) / 2 + rng.normal(0, 0.03) * height))
+        face.paste(Image.new("RGB", word.size, tuple(ink)), at, word)
+    return face
+
+
+def rendered(rng, font_list):
+    """A patch (before normalising) and its text."""
+    fine = 4
+    text = "" if rng.random() < 0.06 else random_text(rng)
+    font = font_list[rng.integers(len(font_list))]
+    back, ink = rng.integers(0, 256, 3), rng.integers(0, 256, 3)
+    if rng.random() < 0.6:  # white on a colour, or a colour on grey
+        light = np.clip(rng.integers(150, 256) + rng.normal(0, 6, 3), 0, 255).astype(int)
+        back, ink = (back, light) if rng.random() < 0.6 else (light, ink)
+    if np.abs(back - ink).sum() < 90:
+        ink = 255 - back
+    canvas = Image.new("RGB", (fine * WIDTH, fine * HEIGHT), tuple(rng.integers(0, 256, 3)))
+    draw = ImageDraw.Draw(canvas)
+    for _ in range(rng.integers(0, 6)):  # surroundings
+        x, y = rng.integers(0, canvas.width), rng.integers(0, canvas.height)
+        w, h = rng.integers(4, 120, 2)
+        draw.rectangle((x, y, x + w, y + h), fill=tuple(rng.integers(0, 256, 3)))
+    high = fine * rng.uniform(26, 38)
+    wide = float(np.clip(high * rng.uniform(0.55, 1.9), fine * 14, fine * 82))
+    size = (int(wide), int(high))
+    x, y = (canvas.width - size[0]) // 2, (canvas.height - size[1]) // 2
+    # The pillar above and below, and its next face beside, in another light.
+    pillar = tuple(rng.integers(0, 256, 3))
+    draw.rectangle((x, 0, x + size[0], canvas.height), fill=pillar)
+    canvas.paste(plate(rng, text, font, size, back, ink), (x, y))
+    if rng.random() < 0.5:
+        light = rng.uniform(0.4, 1.6)
+        beside = plate(rng, text if rng.random() < 0.75 else "", font, size,
+                       np.clip(back * light, 0, 255).astype(int),
+                       np.clip(ink * light, 0, 255).astype(int))
+        beside = beside.resize((max(2, int(size[0] * rng.uniform(0.1, 0.7))), size[1]))
+        canvas.paste(beside, (x + size[0], y) if rng.random() < 0.5 else (x - beside.width, y))
+    width_px = wide / fine
+    canvas = warp(rng, canvas, 0.06, 0.07)
+    blur = fine * abs(rng.normal(0, 0.7))
+    patch = canvas.filter(ImageFilter.GaussianBlur(blur)).resize((WIDTH, HEIGHT), Image.BOX)
+    # What a far or slanted face gives: few columns and rows.
+    keep = rng.uniform(0.25, 1.0, 2)
+    if rng.random() < 0.6:
+        small = patch.resize((max(8, int(WIDTH * keep[0])), max(6, int(HEIGHT * keep[1]))),
+                             Image.BOX)
+        patch = small.resize((WIDTH, HEIGHT), Image.BILINEAR)
+    pixels = np.asarray(patch, np.float32) * rng.uniform(0.05, 1.0)
+    pixels += rng.normal(0, rng.uniform(0.3, 5.0), pixels.shape)
+    return normalised(np.clip(np.rint(pixels), 0, 255), width_px), text
+
+
+def warp(rng, image, turn, shift):
+    """Turned and sheared by `turn`, moved by `shift` of the height, one standard deviation each."""
+    a = 1.0 + rng.normal(0, 0.05)
+    e = 1.0 + rng.normal(0, 0.05)
+    b, d = rng.normal(0, turn, 2)
+    cx, cy = image.width / 2, image.height / 2
+    dx, dy = rng.normal(0, shift * image.height, 2)
+    return image.transform(image.size, Image.AFFINE,
+                           (a, b, cx - a * cx - b * cy + dx, d, e, cy - d * cx - e * cy + dy),
+                           Image.BILINEAR)
+
+
+def normalised(pixels, width):
+    """As the program does: mean 128 and spread 40 on the face."""
+    half = int(np.clip(0.5 * width, 4, WIDTH // 2))
+    face = pixels[3 : HEIGHT - 3, WIDTH // 2 - half : WIDTH // 2 + half].reshape(-1, 3)
+    spread = max(1.5, float(np.sqrt(face.var(0).mean())))
+    return np.clip(np.rint(128 + 40 / spread * (pixels - face.mean(0))), 0, 255).astype(np.uint8)
+
+
+class Crops:
+    """Faces that the simulator drew, straightened by the program."""
+
+    def __init__(self, folder, wanted):
+        self.patches, self.texts, self.heights, self.distances = [], [], [], []
+        for path in sorted(glob.glob(os.path.join(folder, "g*", "*_texts.csv"))):
+            if not wanted(int(os.path.basename(os.path.dirname(path))[1:])):
+                continue
+            with open(path) as file:
+                rows = list(csv.DictReader(file))
+            strip = np.asarray(Image.open(path[:-4] + ".png").convert("RGB"))
+            for i, row in enumerate(rows):
+                self.patches.append(strip[HEIGHT * i : HEIGHT * (i + 1)])
+                self.texts.append(row["text"])
+                self.heights.append(float(row["height_px"]))
+                self.distances.append(float(row["distance_m"]))
+        self.heights, self.distances = np.array(self.heights), np.array(self.distances)
+        has_text = np.array([bool(text) for text in self.texts])
+        # Far faces cannot be read; plain ones are many.
+        useful = (self.heights > 9.0) & (~has_text | (self.distances < 16.0))
+        self.weights = useful * np.where(has_text, 1.0, 0.35)
+        if self.weights.sum() > 0:
+            self.weights = self.weights / self.weights.sum()
+
+    def __len__(self):
+        return len(self.texts)
+
+
+def augmented(rng, patch):
+    """A patch as other light, colours and a slightly wrong outline would give it."""
+    image = warp(rng, Image.fromarray(patch), 0.03, 0.04)
+    if rng.random() < 0.3:
+        image = image.filter(ImageFilter.GaussianBlur(abs(rng.normal(0, 0.8))))
+    pixels = np.asarray(image, np.float32)[..., rng.permutation(3)]
+    pixels = 128 + (pixels - 128) * np.exp(rng.normal(0, 0.2)) + rng.normal(0, 10)
+    if rng.random() < 0.15:
+        pixels = 256 - pixels
+    if rng.random() < 0.4:
+        pixels = pixels + rng.normal(0, rng.uniform(0, 14), pixels.shape)
+    return np.clip(np.rint(pixels), 0, 255).astype(np.uint8)

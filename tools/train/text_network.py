@@ -1,0 +1,71 @@
+# SPDX-FileCopyrightText: 2026 The Parkade authors
+# SPDX-License-Identifier: Apache-2.0
+"""The reader of zone texts: a small convolutional network over a straightened face, one column of
+logits for every second pixel column, decoded as a sequence (connectionist temporal classification,
+Graves et al. 2006). Channel 0 is the blank, then the letters of ALPHABET.
+"""
+import torch
+from torch import nn
+from torch.nn import functional as F
+
+# I and O are left out: garages avoid them since they look like digits.
+ALPHABET = "0123456789ABCDEFGHJKLMNPQRSTUVWXYZ-"
+WIDTH, HEIGHT = 96, 40
+MEAN, SCALE = 128.0, 1.0 / 40.0
+
+
+def block(channels_in, channels_out, kernel=3, dilation=1, padding=None):
+    size = (kernel, kernel) if isinstance(kernel, int) else kernel
+    if padding is None:
+        padding = tuple(d * (k - 1) // 2 for k, d in zip(size, (1, dilation)))
+    return nn.Sequential(
+        nn.Conv2d(channels_in, channels_out, size, 1, padding, (1, dilation), bias=False),
+        nn.BatchNorm2d(channels_out), nn.ReLU(inplace=True))
+
+
+class TextNetwork(nn.Module):
+    def __init__(self):
+        super().__init__()
+        self.layers = nn.Sequential(
+            block(3, 16), nn.MaxPool2d(2),                         # 20 x 48
+            block(16, 32), block(32, 32), nn.MaxPool2d((2, 1)),    # 10 x 48
+            block(32, 48), block(48, 48), nn.MaxPool2d((2, 1)),    # 5 x 48
+            block(48, 64),
+            block(64, 80, (5, 3), padding=(0, 1)),                 # 1 x 48
+            block(80, 80, (1, 5), dilation=2),                     # a second copy beside the first
+            block(80, 80, (1, 5), dilation=4),
+            nn.Conv2d(80, len(ALPHABET) + 1, 1))
+
+    def forward(self, x):
+        """N x 3 x 40 x 96 (RGB, normalised) -> logits N x channels x 1 x 48."""
+        return self.layers(x)
+
+
+def to_input(patches):
+    """N x 40 x 96 x 3 bytes, RGB -> the network's input."""
+    return (torch.from_numpy(patches).permute(0, 3, 1, 2).float() - MEAN) * SCALE
+
+
+def encode(text):
+    return [ALPHABET.index(letter) + 1 for letter in text]
+
+
+def read(logits):
+    """The most probable path of each, as texts."""
+    texts = []
+    for path in logits[:, :, 0].argmax(1).tolist():
+        text, last = "", 0
+        for symbol in path:
+            if symbol != last and symbol > 0:
+                text += ALPHABET[symbol - 1]
+            last = symbol
+        texts.append(text)
+    return texts
+
+
+def sequence_loss(logits, texts):
+    log_p = F.log_softmax(logits[:, :, 0], 1).permute(2, 0, 1)
+    targets = torch.tensor([symbol for text in texts for symbol in encode(text)])
+    lengths = torch.tensor([len(text) for text in texts])
+    steps = torch.full((len(texts),), log_p.shape[0])
+    return F.ctc_loss(log_p, targets, steps, lengths, zero_infinity=True)

@@ -1,0 +1,127 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Parkade authors
+# SPDX-License-Identifier: Apache-2.0
+"""Trains the reader of zone texts on rendered faces and on those of make_data.py.
+
+    tools/train/train_text.py --data DATA --out RUN --steps 6000
+
+Writes RUN/text.pt. Garages whose seed ends in 3 are kept for validation; without --data it learns
+from rendered faces alone. --check FILE only scores a state.
+"""
+import argparse
+import os
+import sys
+import time
+
+os.environ.setdefault("OMP_WAIT_POLICY", "passive")
+
+import numpy as np  # noqa: E402
+import torch  # noqa: E402
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from text_data import Crops, augmented, fonts, rendered  # noqa: E402
+from text_network import TextNetwork, read, sequence_loss, to_input  # noqa: E402
+
+
+def is_validation(garage):
+    return garage % 10 == 3
+
+
+def render_many(rng, count):
+    font_list = fonts()
+    return [rendered(rng, font_list) for _ in range(count)]
+
+
+def make_batch(rng, drawn, crops, size, share):
+    patches, texts = [], []
+    for _ in range(size):
+        if len(crops) and rng.random() < share:
+            i = rng.choice(len(crops), p=crops.weights)
+            patch, text = crops.patches[i], crops.texts[i]
+        else:
+            patch, text = drawn[rng.integers(len(drawn))]
+        patches.append(augmented(rng, patch))
+        texts.append(text)
+    return np.stack(patches), texts
+
+
+def accuracy(network, patches, texts):
+    found = []
+    with torch.no_grad():
+        for i in range(0, len(patches), 64):
+            found += read(network(to_input(np.stack(patches[i : i + 64]))))
+    return np.array([a == b for a, b in zip(found, texts)]), found
+
+
+def report(network, crops, drawn):
+    """Share read rightly: rendered faces; faces of the validation garages by distance."""
+    right, _ = accuracy(network, [p for p, _ in drawn], [t for _, t in drawn])
+    text = f"rendered {right.mean():.3f}"
+    if len(crops):
+        right, found = accuracy(network, crops.patches, crops.texts)
+        has_text = np.array([bool(t) for t in crops.texts])
+        for low, high in ((0, 6), (6, 10), (10, 15)):
+            chosen = has_text & (crops.distances >= low) & (crops.distances < high)
+            text += f", {low}-{high} m {right[chosen].mean():.3f} of {chosen.sum()}"
+        plain = ~has_text & (crops.heights > 9.0)
+        text += f", plain {right[plain].mean():.3f} of {plain.sum()}"
+    return text
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--data", help="folder of make_data.py")
+    parser.add_argument("--out", help="folder for text.pt")
+    parser.add_argument("--check", help="only score this state")
+    parser.add_argument("--steps", type=int, default=6000)
+    parser.add_argument("--batch", type=int, default=32)
+    parser.add_argument("--rate", type=float, default=3e-3)
+    parser.add_argument("--rendered", type=int, default=12000, help="rendered faces [12000]")
+    parser.add_argument("--share", type=float, default=0.6, help="of faces from --data [0.6]")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--threads", type=int, default=1)
+    a = parser.parse_args()
+    torch.set_num_threads(a.threads)
+    torch.manual_seed(a.seed)
+    rng = np.random.default_rng(a.seed)
+    network = TextNetwork()
+    held_back = Crops(a.data or "", is_validation)
+    drawn_check = render_many(np.random.default_rng(a.seed + 1000), 1000)
+    if a.check:
+        network.load_state_dict(torch.load(a.check)["average"])
+        print(report(network.eval(), held_back, drawn_check))
+        return
+    os.makedirs(a.out, exist_ok=True)
+    crops = Crops(a.data or "", lambda garage: not is_validation(garage))
+    drawn = render_many(rng, a.rendered)
+    print(f"{len(crops)} faces, {len(held_back)} for validation, {len(drawn)} rendered; "
+          f"{sum(p.numel() for p in network.parameters())} parameters", flush=True)
+    optimiser = torch.optim.AdamW(network.parameters(), lr=a.rate, weight_decay=1e-2)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, a.rate, a.steps, pct_start=0.1)
+    average = TextNetwork()
+    average.load_state_dict(network.state_dict())
+    start, losses = time.time(), []
+    for step in range(1, a.steps + 1):
+        network.train()
+        patches, texts = make_batch(rng, drawn, crops, a.batch, a.share)
+        loss = sequence_loss(network(to_input(patches)), texts)
+        optimiser.zero_grad()
+        loss.backward()
+        torch.nn.utils.clip_grad_norm_(network.parameters(), 5.0)
+        optimiser.step()
+        schedule.step()
+        losses.append(float(loss.detach()))
+        with torch.no_grad():
+            keep = min(0.995, step / (step + 10.0))
+            for mean, now in zip(average.state_dict().values(), network.state_dict().values()):
+                mean.copy_(now if mean.dtype == torch.long else mean * keep + now * (1 - keep))
+        if step % 500 == 0 or step == a.steps:
+            print(f"step {step}, {time.time() - start:.0f} s: loss {np.mean(losses[-500:]):.3f}; "
+                  f"{report(average.eval(), held_back, drawn_check)}", flush=True)
+            torch.save({"average": average.state_dict(), "step": step},
+                       os.path.join(a.out, "text.pt"))
+
+
+if __name__ == "__main__":
+    main()
