@@ -45,9 +45,11 @@ def random_text(rng):
 
 
 def plate(rng, text, font, size, back, ink):
-    """One face of size (width, height), four times as fine as the patch."""
+    """One face of size (width, height), four times as fine as the patch; the middle of each letter
+    along it."""
     width, height = size
     face = Image.new("RGB", size, tuple(back))
+    middles = []
     if text:
         box = font.getbbox(text, stroke_width=0)
         word = Image.new("L", (box[2] - box[0] + 4, box[3] - box[1] + 4))
@@ -60,11 +62,13 @@ def plate(rng, text, font, size, back, ink):
         at = (int((width - word.width) / 2 + rng.normal(0, 0.02) * width),
               int((height - word.height) / 2 + rng.normal(0, 0.03) * height))
         face.paste(Image.new("RGB", word.size, tuple(ink)), at, word)
-    return face
+        ends = [font.getlength(text[:k]) / font.getlength(text) for k in range(len(text) + 1)]
+        middles = [at[0] + word.width * 0.5 * (a + b) for a, b in zip(ends, ends[1:])]
+    return face, np.array(middles)
 
 
 def rendered(rng, font_list):
-    """A patch (before normalising) and its text."""
+    """A patch, its text, and the column of each letter's middle."""
     fine = 4
     text = "" if rng.random() < 0.06 else random_text(rng)
     font = font_list[rng.integers(len(font_list))]
@@ -87,16 +91,19 @@ def rendered(rng, font_list):
     # The pillar above and below, and its next face beside, in another light.
     pillar = tuple(rng.integers(0, 256, 3))
     draw.rectangle((x, 0, x + size[0], canvas.height), fill=pillar)
-    canvas.paste(plate(rng, text, font, size, back, ink), (x, y))
+    face, middles = plate(rng, text, font, size, back, ink)
+    canvas.paste(face, (x, y))
     if rng.random() < 0.5:
         light = rng.uniform(0.4, 1.6)
-        beside = plate(rng, text if rng.random() < 0.75 else "", font, size,
-                       np.clip(back * light, 0, 255).astype(int),
-                       np.clip(ink * light, 0, 255).astype(int))
+        beside, _ = plate(rng, text if rng.random() < 0.75 else "", font, size,
+                          np.clip(back * light, 0, 255).astype(int),
+                          np.clip(ink * light, 0, 255).astype(int))
         beside = beside.resize((max(2, int(size[0] * rng.uniform(0.1, 0.7))), size[1]))
         canvas.paste(beside, (x + size[0], y) if rng.random() < 0.5 else (x - beside.width, y))
     width_px = wide / fine
-    canvas = warp(rng, canvas, 0.06, 0.07)
+    canvas, inverse = warp(rng, canvas, 0.06, 0.07)
+    points = np.stack([x + middles, np.full(len(middles), 0.5 * canvas.height), 1 + 0 * middles])
+    middles = (inverse @ points)[0] / fine
     blur = fine * abs(rng.normal(0, 0.7))
     patch = canvas.filter(ImageFilter.GaussianBlur(blur)).resize((WIDTH, HEIGHT), Image.BOX)
     # What a far or slanted face gives: few columns and rows.
@@ -107,19 +114,21 @@ def rendered(rng, font_list):
         patch = small.resize((WIDTH, HEIGHT), Image.BILINEAR)
     pixels = np.asarray(patch, np.float32) * rng.uniform(0.05, 1.0)
     pixels += rng.normal(0, rng.uniform(0.3, 5.0), pixels.shape)
-    return normalised(np.clip(np.rint(pixels), 0, 255), width_px), text
+    return normalised(np.clip(np.rint(pixels), 0, 255), width_px), text, middles
 
 
 def warp(rng, image, turn, shift):
-    """Turned and sheared by `turn`, moved by `shift` of the height, one standard deviation each."""
+    """Turned and sheared by `turn`, moved by `shift` of the height, one standard deviation each; and
+    the matrix that takes points along."""
     a = 1.0 + rng.normal(0, 0.05)
     e = 1.0 + rng.normal(0, 0.05)
     b, d = rng.normal(0, turn, 2)
     cx, cy = image.width / 2, image.height / 2
     dx, dy = rng.normal(0, shift * image.height, 2)
-    return image.transform(image.size, Image.AFFINE,
-                           (a, b, cx - a * cx - b * cy + dx, d, e, cy - d * cx - e * cy + dy),
-                           Image.BILINEAR)
+    matrix = np.array([[a, b, cx - a * cx - b * cy + dx], [d, e, cy - d * cx - e * cy + dy],
+                       [0, 0, 1]])
+    out = image.transform(image.size, Image.AFFINE, matrix[:2].ravel(), Image.BILINEAR)
+    return out, np.linalg.inv(matrix)
 
 
 def normalised(pixels, width):
@@ -159,8 +168,9 @@ class Crops:
 
 
 def augmented(rng, patch):
-    """A patch as other light, colours and a slightly wrong outline would give it."""
-    image = warp(rng, Image.fromarray(patch), 0.03, 0.04)
+    """A patch as other light, colours and a slightly wrong outline would give it, and the matrix
+    that takes points along."""
+    image, moved = warp(rng, Image.fromarray(patch), 0.03, 0.04)
     if rng.random() < 0.3:
         image = image.filter(ImageFilter.GaussianBlur(abs(rng.normal(0, 0.8))))
     pixels = np.asarray(image, np.float32)[..., rng.permutation(3)]
@@ -169,4 +179,4 @@ def augmented(rng, patch):
         pixels = 256 - pixels
     if rng.random() < 0.4:
         pixels = pixels + rng.normal(0, rng.uniform(0, 14), pixels.shape)
-    return np.clip(np.rint(pixels), 0, 255).astype(np.uint8)
+    return np.clip(np.rint(pixels), 0, 255).astype(np.uint8), moved

@@ -20,6 +20,7 @@
 #include "parkade/core/progress.hpp"
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
+#include "parkade/semantics/class_map.hpp"
 
 namespace parkade::cli {
 namespace {
@@ -150,6 +151,12 @@ Result<std::vector<std::unique_ptr<SampleScore>>> makeScores(const BenchArgument
                      0.01 * arguments.options.height_error_cm});
   if (!slots) return slots.error();
   scores.push_back(std::move(slots).value());
+  const std::string& views = arguments.segmentation.raw_network;
+  if (!true_labels && views.empty() && !findModel("view_segmentation")) return scores;
+  const std::string faces = pictures.empty() ? pictures : joinPath(pictures, "zone_texts");
+  Result<std::unique_ptr<SampleScore>> texts = makeZoneTextScore({views, true_labels, faces, {}});
+  if (!texts) return texts.error();
+  scores.push_back(std::move(texts).value());
   return scores;
 }
 

@@ -8,6 +8,7 @@
 
 #include "parkade/cli/semantic_samples.hpp"
 #include "parkade/core/result.hpp"
+#include "parkade/semantics/zone_marker_faces.hpp"
 
 namespace parkade::cli {
 
@@ -55,5 +56,15 @@ struct SlotScoreOptions {
 
 /// Precision, recall, entrance corners and availability of parking slots.
 Result<std::unique_ptr<SampleScore>> makeSlotScore(const SlotScoreOptions& options);
+
+struct ZoneTextScoreOptions {
+  std::string view_network;  ///< class map; empty: Parkade's own
+  bool true_labels = false;  ///< markers from the true labels instead of the network's
+  std::string pictures;      ///< folder for straightened faces; empty: none
+  ZoneMarkerFaceOptions faces;
+};
+
+/// Zone texts in single camera views: those read rightly, by distance.
+Result<std::unique_ptr<SampleScore>> makeZoneTextScore(const ZoneTextScoreOptions& options);
 
 }  // namespace parkade::cli

@@ -170,7 +170,10 @@ double ObjectRegistry::existence(const Track& track) const {
 }
 
 bool ObjectRegistry::exists(const Track& track) const {
-  if (track.observations < options_.min_observations) return false;
+  const int least = track.semantic_class == SemanticClass::kZoneMarker
+                        ? options_.min_marker_observations
+                        : options_.min_observations;
+  if (track.observations < least) return false;
   if (!sighted_ || track.outline.empty()) return true;
   const double looks_alike = track.votes.own + track.votes.rival;
   return existence(track) > 0.0 && track.votes.own >= options_.min_own_share * looks_alike;

@@ -21,6 +21,7 @@ struct ObjectRegistryOptions {
   double max_distance_m = 1.0;
   double position_floor_m = 0.03;
   int min_observations = 3;
+  int min_marker_observations = 1;
   double min_own_share = 0.45;
   double duplicate_overlap = 0.3;
   ExistenceOptions paint{0.4, 0.1, 0.1};
@@ -35,6 +36,8 @@ struct ObjectRegistryOptions {
             1e-4, 1.0);
     v.field("min_observations", min_observations, "count", "Objects seen less often are not told.",
             1, 1000);
+    v.field("min_marker_observations", min_marker_observations, "count",
+            "The same of zone markers, each of whose observations rests on several views.", 1, 1000);
     v.field("min_own_share", min_own_share, "ratio",
             "Of the pixels at an object's place that are labelled as its class or as one that has "
             "its looks, so many must be of its class.",

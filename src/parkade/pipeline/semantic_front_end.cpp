@@ -31,6 +31,7 @@ struct SemanticFrontEnd::Impl {
   BevViews bev_views;
   std::unique_ptr<ObjectExtractor> objects;  // made when the masks are known
   AgentTracker tracker;
+  std::unique_ptr<ZoneMarkerFrontEnd> zone_markers;  // null: there are no networks for it
   // Taken by addOdometry(), used by look(), which may work in another thread meanwhile.
   struct View {
     GroundPlaneEstimate floor;
@@ -43,6 +44,7 @@ struct SemanticFrontEnd::Impl {
   StageClock stitch_clock{"bev"};
   StageClock segment_clock{"segment"};
   StageClock feature_clock{"features"};
+  StageClock zone_clock{"zone markers"};
 };
 
 SemanticFrontEnd::SemanticFrontEnd(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -62,6 +64,9 @@ Result<std::unique_ptr<SemanticFrontEnd>> SemanticFrontEnd::create(
   impl->bev_views = viewsOf(impl->stitcher, rig);
   impl->objects = std::make_unique<ObjectExtractor>(impl->stitcher.geometry(), impl->bev_views,
                                                     options.objects);
+  auto zone_markers = ZoneMarkerFrontEnd::create(rig, options.zone_markers);
+  if (!zone_markers) return zone_markers.error();
+  impl->zone_markers = std::move(zone_markers).value();
   return std::unique_ptr<SemanticFrontEnd>(new SemanticFrontEnd(std::move(impl)));
 }
 
@@ -121,6 +126,12 @@ Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames) {
   frame.objects = std::move(found.objects);
   frame.moving = m.tracker.update(found.agents, SE2::fromSE3(view.now.T_odom_vehicle), frames.t_ns);
   m.feature_clock.add(since(begin));
+  if (m.zone_markers == nullptr) return frame;
+  begin = Clock::now();
+  auto markers = m.zone_markers->look(frames, view.now, view.floor.attitude);
+  if (!markers) return markers.error();
+  for (ObjectObservation& marker : *markers) frame.objects.push_back(std::move(marker));
+  m.zone_clock.add(since(begin));
   return frame;
 }
 
@@ -130,7 +141,7 @@ const BevImage& SemanticFrontEnd::picture() const {
 
 std::vector<StageTiming> SemanticFrontEnd::timings() const {
   return {impl_->stitch_clock.timing(), impl_->segment_clock.timing(),
-          impl_->feature_clock.timing()};
+          impl_->feature_clock.timing(), impl_->zone_clock.timing()};
 }
 
 }  // namespace parkade

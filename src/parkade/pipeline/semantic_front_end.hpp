@@ -11,6 +11,7 @@
 #include "parkade/core/options.hpp"
 #include "parkade/core/result.hpp"
 #include "parkade/pipeline/stage_clock.hpp"
+#include "parkade/pipeline/zone_marker_front_end.hpp"
 #include "parkade/semantics/agent_tracker.hpp"
 #include "parkade/semantics/label_lines.hpp"
 #include "parkade/semantics/line_extraction.hpp"
@@ -33,6 +34,7 @@ struct SemanticFrontEndOptions {
   SlotOptions slots;
   ObjectOptions objects;
   AgentTrackerOptions agents;
+  ZoneMarkerFrontEndOptions zone_markers;
 
   void visit(OptionVisitor& v) {
     v.field("network", network,
@@ -47,11 +49,13 @@ struct SemanticFrontEndOptions {
     v.group("slots", slots);
     v.group("objects", objects);
     v.group("agents", agents);
+    v.group("zone_markers", zone_markers);
   }
 };
 
 /// From the cameras' pictures to semantic features: stitches them on the floor that the odometry's
-/// landmarks tell, labels the picture, and draws features from the labels.
+/// landmarks tell, labels the picture, and draws features from the labels; zone markers come from the
+/// cameras' own pictures.
 class SemanticFrontEnd {
  public:
   /// Fails where there is no network, or masks of the rig cannot be read.

@@ -49,7 +49,7 @@ TEST(ZoneMarkerTracker, NoiseFreeViewsGiveThePlaceExactly) {
     ZoneMarkerView view =
         viewOf(marker, options.height_m, Eigen::Vector3d(0.7 * k, 0.0, 0.9), nullptr);
     view.readings = says("B12", 0.9);
-    tracker.add({view}, k * 100000000);
+    tracker.add({view}, k * TimeNs{100000000});
   }
   const auto told = tracker.takeTold();
   ASSERT_EQ(told.size(), 1U);
@@ -75,7 +75,7 @@ TEST(ZoneMarkerTracker, CovarianceTellsTheErrorOfNoisyViews) {
     for (int k = 0; k < 10; ++k) {
       ZoneMarkerView view = viewOf(marker, height, Eigen::Vector3d(0.6 * k, 0.0, 0.9), &random);
       view.readings = says("C3", 0.7);
-      tracker.add({view}, k * 100000000);
+      tracker.add({view}, k * TimeNs{100000000});
     }
     // One view in a thousand fails the gate and begins a marker of its own.
     const auto found = tracker.followed();
@@ -105,7 +105,7 @@ TEST(ZoneMarkerTracker, NeighboursStayApart) {
       views.push_back(viewOf(markers[i], 0.6, eye, &random));
       views.back().readings = says(texts[i], 0.8);
     }
-    tracker.add(views, k * 100000000);
+    tracker.add(views, k * TimeNs{100000000});
     for (const ZoneMarker& marker : tracker.takeTold()) {
       const auto i = static_cast<std::size_t>(std::find(texts.begin(), texts.end(), marker.text) -
                                               texts.begin());
@@ -135,7 +135,7 @@ TEST(ZoneMarkerTracker, WhatNobodyReadsIsNotTold) {
   for (int k = 0; k < 20; ++k) {
     ZoneMarkerView view = viewOf({6.0, 3.0, 1.7}, 0.6, Eigen::Vector3d(0.4 * k, 0.0, 0.9), nullptr);
     view.readings = {{{"", 0.99}, {"1", 0.01}}};
-    tracker.add({view}, k * 100000000);
+    tracker.add({view}, k * TimeNs{100000000});
   }
   EXPECT_EQ(tracker.followed().size(), 1U);
   EXPECT_TRUE(tracker.takeTold().empty());

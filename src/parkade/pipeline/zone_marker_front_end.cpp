@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/pipeline/zone_marker_front_end.hpp"
+
+#include <opencv2/core.hpp>
+#include <utility>
+
+#include "parkade/core/log.hpp"
+#include "parkade/geometry/se2.hpp"
+#include "parkade/semantics/segmentation.hpp"
+#include "parkade/semantics/zone_text_reader.hpp"
+#include "parkade/tracking/overlap.hpp"
+
+namespace parkade {
+
+struct ZoneMarkerFrontEnd::Impl {
+  ZoneMarkerFrontEndOptions options;
+  Rig rig;
+  std::vector<cv::Mat> masks;
+  SegmentationNetwork network;
+  ZoneTextReader reader;
+  ZoneMarkerTracker tracker;
+  std::size_t next_camera = 0;
+
+  // What one camera sees, in the odometry's frame turned so that z points up.
+  Result<std::vector<ZoneMarkerView>> viewsOf(std::size_t camera, const cv::Mat& image,
+                                              const SE3& T_up_vehicle) {
+    const RigCamera& eye = rig.cameras[camera];
+    Result<ViewLabels> labels = network.segmentView(image);
+    if (!labels) return labels.error();
+    const SE3 T_up_cam = T_up_vehicle * eye.T_vehicle_cam;
+    std::vector<ZoneMarkerView> views;
+    for (const ZoneMarkerSight& sight :
+         findZoneMarkers(labels->labels, image, masks[camera], eye.camera, T_up_cam.rotation(),
+                         options.faces)) {
+      if (sight.cut) continue;  // its middle is not seen
+      ZoneMarkerView view{T_up_cam.translation(), sight.ray_level,    sight.sigma,
+                          sight.height_ratio,     sight.height_sigma, {}};
+      for (const ZoneMarkerFace& face : sight.faces) {
+        Result<std::vector<TextReading>> readings = reader.read(face.patch);
+        if (!readings) return readings.error();
+        view.readings.push_back(std::move(readings).value());
+      }
+      views.push_back(std::move(view));
+    }
+    return views;
+  }
+};
+
+ZoneMarkerFrontEnd::ZoneMarkerFrontEnd(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+ZoneMarkerFrontEnd::~ZoneMarkerFrontEnd() = default;
+
+Result<std::unique_ptr<ZoneMarkerFrontEnd>> ZoneMarkerFrontEnd::create(
+    const Rig& rig, const ZoneMarkerFrontEndOptions& options) {
+  std::unique_ptr<ZoneMarkerFrontEnd> none;
+  if (!options.enabled) return none;
+  for (const auto& [named, own] : {std::pair(&options.network, "view_segmentation"),
+                                   std::pair(&options.reader, "zone_text")}) {
+    if (!named->empty() || findModel(own)) continue;
+    logInfo("no zone markers: the network {} is not installed", own);
+    return none;
+  }
+  Result<SegmentationNetwork> network =
+      SegmentationNetwork::loadOrOwn(options.network, "view_segmentation");
+  if (!network) return network.error();
+  Result<std::string> reader_path =
+      options.reader.empty() ? findModel("zone_text") : Result<std::string>(options.reader);
+  if (!reader_path) return reader_path.error();
+  Result<ZoneTextReader> reader = ZoneTextReader::load(*reader_path);
+  if (!reader) return reader.error();
+  Result<std::vector<cv::Mat>> masks = readBodyMasks(rig);
+  if (!masks) return masks.error();
+  return std::unique_ptr<ZoneMarkerFrontEnd>(new ZoneMarkerFrontEnd(std::make_unique<Impl>(
+      Impl{options, rig, std::move(masks).value(), std::move(network).value(),
+           std::move(reader).value(), ZoneMarkerTracker(options.tracker)})));
+}
+
+Result<std::vector<ObjectObservation>> ZoneMarkerFrontEnd::look(const FrameSet& frames,
+                                                                const PoseEstimate& odometry,
+                                                                const GroundAttitude& attitude) {
+  Impl& m = *impl_;
+  const SE3 T_up_odom(SO3::fromTwoVectors(odometry.up_odom, Eigen::Vector3d::UnitZ()),
+                      Eigen::Vector3d::Zero());
+  const SE3 T_up_vehicle = T_up_odom * odometry.T_odom_vehicle;
+  const std::size_t cameras = m.rig.cameras.size();
+  int looked = 0;
+  for (std::size_t k = 0; k < cameras && looked < m.options.views; ++k) {
+    const std::size_t camera = m.next_camera;
+    m.next_camera = (m.next_camera + 1) % cameras;
+    if (camera >= frames.images.size() || frames.images[camera].empty()) continue;
+    ++looked;
+    Result<std::vector<ZoneMarkerView>> views =
+        m.viewsOf(camera, frames.images[camera], T_up_vehicle);
+    if (!views) return views.error();
+    m.tracker.add(*views, frames.t_ns);
+  }
+  // The map takes places in the plane of the levelled vehicle: heading and place of the odometry.
+  const SE2 T_vehicle_odom = SE2::fromSE3(odometry.T_odom_vehicle).inverse();
+  Eigen::Matrix3d R_vehicle_up = Eigen::Matrix3d::Identity();
+  R_vehicle_up.topLeftCorner<2, 2>() = T_vehicle_odom.rotationMatrix();
+  std::vector<ObjectObservation> observations;
+  for (const ZoneMarker& marker : m.tracker.takeTold()) {
+    const Eigen::Vector3d p_odom = T_up_odom.inverse() * marker.position;
+    ObjectObservation o;
+    o.semantic_class = SemanticClass::kZoneMarker;
+    o.position << T_vehicle_odom * p_odom.head<2>(),
+        (marker.position - T_up_vehicle.translation()).z() + attitude.height;
+    o.covariance = R_vehicle_up * marker.covariance * R_vehicle_up.transpose();
+    o.text = marker.text;
+    o.confidence = marker.confidence;
+    observations.push_back(std::move(o));
+  }
+  return observations;
+}
+
+}  // namespace parkade

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "parkade/camera/rig.hpp"
+#include "parkade/core/options.hpp"
+#include "parkade/core/result.hpp"
+#include "parkade/semantics/zone_marker_faces.hpp"
+#include "parkade/semantics/zone_marker_tracker.hpp"
+#include "parkade/types/pose_estimate.hpp"
+#include "parkade/types/samples.hpp"
+#include "parkade/types/semantic_features.hpp"
+
+namespace parkade {
+
+struct ZoneMarkerFrontEndOptions {
+  bool enabled = true;
+  std::string network;
+  std::string reader;
+  int views = 1;
+  ZoneMarkerFaceOptions faces;
+  ZoneMarkerTrackerOptions tracker;
+
+  void visit(OptionVisitor& v) {
+    v.field("enabled", enabled, "Whether zone markers are looked for in the cameras' pictures.");
+    v.field("network", network,
+            "Class map of the network for camera views; empty: the one that comes along.");
+    v.field("reader", reader, "Network that reads zone texts; empty: the one that comes along.");
+    v.field("views", views, "count",
+            "Cameras whose pictures are looked at each time; all take their turns.", 1, 64);
+    v.group("faces", faces);
+    v.group("tracker", tracker);
+  }
+};
+
+/// Zone markers on pillars, from the cameras' own pictures: labels some of them in turn, reads the
+/// markers in sight and places them by several views. Not thread-safe.
+class ZoneMarkerFrontEnd {
+ public:
+  /// Null where it is switched off, or where Parkade's own networks are not installed (which is
+  /// logged). Fails where a network that the options name cannot be used, or one that is installed
+  /// is broken.
+  static Result<std::unique_ptr<ZoneMarkerFrontEnd>> create(
+      const Rig& rig, const ZoneMarkerFrontEndOptions& options);
+  ~ZoneMarkerFrontEnd();
+
+  /// The markers that have become well enough known by this frame set, in its levelled vehicle
+  /// frame; each rests on views of its own. odometry: of this frame set. In order of time.
+  Result<std::vector<ObjectObservation>> look(const FrameSet& frames, const PoseEstimate& odometry,
+                                              const GroundAttitude& attitude);
+
+ private:
+  struct Impl;
+  explicit ZoneMarkerFrontEnd(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace parkade
