@@ -101,7 +101,7 @@ def rendered(rng, font_list):
         beside = beside.resize((max(2, int(size[0] * rng.uniform(0.1, 0.7))), size[1]))
         canvas.paste(beside, (x + size[0], y) if rng.random() < 0.5 else (x - beside.width, y))
     width_px = wide / fine
-    canvas, inverse = warp(rng, canvas, 0.06, 0.07)
+    canvas, inverse = warp(rng, canvas, 0.06, 0.05)
     points = np.stack([x + middles, np.full(len(middles), 0.5 * canvas.height), 1 + 0 * middles])
     middles = (inverse @ points)[0] / fine
     blur = fine * abs(rng.normal(0, 0.7))
@@ -114,6 +114,8 @@ def rendered(rng, font_list):
         patch = small.resize((WIDTH, HEIGHT), Image.BILINEAR)
     pixels = np.asarray(patch, np.float32) * rng.uniform(0.05, 1.0)
     pixels += rng.normal(0, rng.uniform(0.3, 5.0), pixels.shape)
+    # Outlines are not exact.
+    width_px *= rng.uniform(0.97, 1.15)
     return normalised(np.clip(np.rint(pixels), 0, 255), width_px), text, middles
 
 
@@ -127,16 +129,21 @@ def warp(rng, image, turn, shift):
     dx, dy = rng.normal(0, shift * image.height, 2)
     matrix = np.array([[a, b, cx - a * cx - b * cy + dx], [d, e, cy - d * cx - e * cy + dy],
                        [0, 0, 1]])
-    out = image.transform(image.size, Image.AFFINE, matrix[:2].ravel(), Image.BILINEAR)
+    out = image.transform(image.size, Image.AFFINE, matrix[:2].ravel(), Image.BILINEAR,
+                          fillcolor=(128, 128, 128))
     return out, np.linalg.inv(matrix)
 
 
 def normalised(pixels, width):
-    """As the program does: mean 128 and spread 40 on the face."""
+    """As the program does: mean 128 and spread 40 on the face, grey beside it."""
     half = int(np.clip(0.5 * width, 4, WIDTH // 2))
     face = pixels[3 : HEIGHT - 3, WIDTH // 2 - half : WIDTH // 2 + half].reshape(-1, 3)
     spread = max(1.5, float(np.sqrt(face.var(0).mean())))
-    return np.clip(np.rint(128 + 40 / spread * (pixels - face.mean(0))), 0, 255).astype(np.uint8)
+    out = np.clip(np.rint(128 + 40 / spread * (pixels - face.mean(0))), 0, 255).astype(np.uint8)
+    margin = 1 + 2 * half // 16
+    out[:, : max(0, WIDTH // 2 - half - margin)] = 128
+    out[:, WIDTH // 2 + half + margin :] = 128
+    return out
 
 
 class Crops:

@@ -87,6 +87,7 @@ def main():
     parser.add_argument("--rendered", type=int, default=12000, help="rendered faces [12000]")
     parser.add_argument("--columns-only", type=int, default=400,
                         help="steps on rendered faces alone at first [400]")
+    parser.add_argument("--warm-start", help="begin with the weights of another text.pt")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--threads", type=int, default=1)
     a = parser.parse_args()
@@ -94,6 +95,8 @@ def main():
     torch.manual_seed(a.seed)
     rng = np.random.default_rng(a.seed)
     network = TextNetwork()
+    if a.warm_start:
+        network.load_state_dict(torch.load(a.warm_start)["average"])
     held_back = Crops(a.data or "", is_validation)
     drawn_check = render_many(np.random.default_rng(a.seed + 1000), 1000)
     if a.check:

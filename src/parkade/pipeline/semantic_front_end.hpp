@@ -54,8 +54,8 @@ struct SemanticFrontEndOptions {
 };
 
 /// From the cameras' pictures to semantic features: stitches them on the floor that the odometry's
-/// landmarks tell, labels the picture, and draws features from the labels; zone markers come from the
-/// cameras' own pictures.
+/// landmarks tell, labels the picture, and draws features from the labels; zone markers come from
+/// the cameras' own pictures.
 class SemanticFrontEnd {
  public:
   /// Fails where there is no network, or masks of the rig cannot be read.

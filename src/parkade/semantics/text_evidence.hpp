@@ -16,15 +16,18 @@ namespace parkade {
 /// faces ran together), so that a text which one of them does not list loses only so much.
 class TextEvidence {
  public:
-  /// The readings of one face, best first. The empty text does not count: it speaks of the face,
-  /// not of the marker.
+  /// The readings of one face, best first. A face that is probably plain says nothing of the
+  /// marker.
   void add(const std::vector<TextReading>& readings) {
     constexpr double kWrong = 0.05;    // share of readings that are wrong altogether
     constexpr double kAnyText = 0.02;  // what such a reading gives to any one text
+    double none = kWrong * kAnyText;
+    for (const TextReading& reading : readings) {
+      if (reading.text.empty()) none += reading.probability;
+    }
     for (const TextReading& reading : readings) {
       if (reading.text.empty()) continue;
-      evidence_[reading.text] +=
-          std::log1p((1.0 - kWrong) * reading.probability / (kWrong * kAnyText));
+      evidence_[reading.text] += std::log1p((1.0 - kWrong) * reading.probability / none);
     }
   }
 

@@ -34,7 +34,7 @@ struct ZoneMarkerFaceOptions {
 /// One vertical face of a marker, straightened: upright, as seen from straight ahead.
 struct ZoneMarkerFace {
   /// CV_8UC3 (BGR), kZonePatchWidth x kZonePatchHeight; on the face mean 128 and standard
-  /// deviation 40, whatever the light.
+  /// deviation 40, whatever the light; grey beside it.
   cv::Mat patch;
   double slant = 0.0;    ///< rad, between its normal and the line of sight
   double height_px = 0;  ///< in the camera's picture
@@ -54,7 +54,7 @@ struct ZoneMarkerSight {
   std::vector<ZoneMarkerFace> faces;  ///< from left to right; those that can be read
 };
 
-/// Straightened faces have this size; a face fills most of it, its surroundings the rest.
+/// Straightened faces have this size; a face stands in the middle, grey beside it.
 inline constexpr int kZonePatchWidth = 96;
 inline constexpr int kZonePatchHeight = 40;
 
