@@ -37,7 +37,8 @@ struct ObjectRegistryOptions {
     v.field("min_observations", min_observations, "count", "Objects seen less often are not told.",
             1, 1000);
     v.field("min_marker_observations", min_marker_observations, "count",
-            "The same of zone markers, each of whose observations rests on several views.", 1, 1000);
+            "The same of zone markers, each of whose observations rests on several views.", 1,
+            1000);
     v.field("min_own_share", min_own_share, "ratio",
             "Of the pixels at an object's place that are labelled as its class or as one that has "
             "its looks, so many must be of its class.",
