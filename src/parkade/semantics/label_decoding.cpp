@@ -8,22 +8,13 @@
 #include <opencv2/imgproc.hpp>
 
 #include "parkade/core/check.hpp"
+#include "parkade/core/isa_clones.hpp"
 
 namespace parkade {
 namespace {
 
-// The loops below are compiled for several instruction sets, and the processor's is chosen at the
-// start. Contraction to fused multiply-add is off in this file: all versions give the same bits.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__linux__) && \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define PARKADE_ROW_CLONES \
-  __attribute__((target_clones("arch=skylake-avx512", "arch=haswell", "default")))
-#else
-#define PARKADE_ROW_CLONES
-#endif
-
 // Keeps the larger of best and row, and which it was.
-PARKADE_ROW_CLONES
+PARKADE_ISA_CLONES
 void keepBest(const float* __restrict row, std::int32_t value, int width, float* __restrict best,
               std::int32_t* __restrict label) {
   for (int u = 0; u < width; ++u) {
@@ -35,7 +26,7 @@ void keepBest(const float* __restrict row, std::int32_t value, int width, float*
 
 // Adds exp(row - best), whose argument is at most 0, within 0.1 %: 2^(x / ln 2), the power of the
 // fraction by a cubic, the whole part put into the exponent.
-PARKADE_ROW_CLONES
+PARKADE_ISA_CLONES
 void addExponentials(const float* __restrict row, const float* __restrict best, int width,
                      float* __restrict total) {
   for (int u = 0; u < width; ++u) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/sim/render/sensor_kernel.hpp"
 
-#include "parkade/sim/render/isa_clones.hpp"
+#include "parkade/core/isa_clones.hpp"
 
 namespace parkade::sim {
 
