@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <deque>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "parkade/semantics/sequence_decoding.hpp"
@@ -12,44 +16,87 @@
 namespace parkade {
 
 /// Which text several readings of one marker agree on: logarithms of its likelihood ratio to a
-/// text that no reading knows, added up. A reading may be wrong altogether (a part was hidden, two
-/// faces ran together), so that a text which one of them does not list loses only so much.
+/// text that no reading knows, added up. A reading may be wrong altogether, so that a text which
+/// one of them does not list loses only so much; and it may be a part of the text, where something
+/// hid the rest or the face's edge was missed. docs/math/zone_markers.md, eqs. (3) and (4).
 class TextEvidence {
  public:
   /// The readings of one face, best first. A face that is probably plain says nothing of the
   /// marker.
   void add(const std::vector<TextReading>& readings) {
-    constexpr double kWrong = 0.05;    // share of readings that are wrong altogether
-    constexpr double kAnyText = 0.02;  // what such a reading gives to any one text
-    double none = kWrong * kAnyText;
+    Face face;
     for (const TextReading& reading : readings) {
-      if (reading.text.empty()) none += reading.probability;
+      if (reading.text.empty()) {
+        face.none += reading.probability;
+      } else if (reading.probability > kNegligible) {
+        face.readings.push_back(reading);
+      }
     }
-    for (const TextReading& reading : readings) {
-      if (reading.text.empty()) continue;
-      evidence_[reading.text] += std::log1p((1.0 - kWrong) * reading.probability / none);
+    if (face.readings.empty()) return;
+    for (const TextReading& reading : face.readings) {
+      whole_[reading.text] += ratio(kWhole * reading.probability, face);
     }
+    faces_.push_back(std::move(face));
+    if (faces_.size() > kFaces) faces_.pop_front();
   }
 
   /// The best text and its probability; empty and 0 where nothing was read.
   [[nodiscard]] TextReading best() const {
     constexpr double kNone = 2.0;  // of all texts that no reading knows
+    constexpr std::size_t kCandidates = 8;
+    std::vector<std::pair<double, const std::string*>> candidates;
+    for (const auto& [text, value] : whole_) candidates.emplace_back(value, &text);
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    candidates.resize(std::min(candidates.size(), kCandidates));
     TextReading result;
     double most = 0.0;
-    for (const auto& [text, value] : evidence_) {
+    for (auto& [value, text] : candidates) {
+      value = evidenceFor(*text);
       if (value <= most) continue;
       most = value;
-      result.text = text;
+      result.text = *text;
     }
     if (result.text.empty()) return result;
     double sum = std::exp(kNone - most);
-    for (const auto& [text, value] : evidence_) sum += std::exp(value - most);
+    for (const auto& [value, text] : candidates) sum += std::exp(value - most);
     result.probability = 1.0 / sum;
     return result;
   }
 
  private:
-  std::map<std::string, double> evidence_;
+  struct Face {
+    std::vector<TextReading> readings;
+    double none = 0.0;  ///< probability that it is plain
+  };
+  static constexpr double kWhole = 0.8;     // share of readings that are of the whole text
+  static constexpr double kPart = 0.15;     // of a part of it
+  static constexpr double kWrong = 0.05;    // wrong altogether
+  static constexpr double kAnyText = 0.02;  // what such a reading gives to any one text
+  static constexpr double kNegligible = 0.01;
+  static constexpr std::size_t kFaces = 40;  // the latest that are kept
+
+  static double ratio(double probability, const Face& face) {
+    return std::log1p(probability / (kWrong * kAnyText + face.none));
+  }
+  [[nodiscard]] double evidenceFor(const std::string& text) const {
+    double sum = 0.0;
+    for (const Face& face : faces_) {
+      double probability = 0.0;
+      for (const TextReading& reading : face.readings) {
+        if (reading.text == text) {
+          probability += kWhole * reading.probability;
+        } else if (text.find(reading.text) != std::string::npos) {
+          probability += kPart * reading.probability;
+        }
+      }
+      sum += ratio(probability, face);
+    }
+    return sum;
+  }
+
+  std::map<std::string, double> whole_;  ///< evidence without parts: picks the candidates
+  std::deque<Face> faces_;
 };
 
 }  // namespace parkade

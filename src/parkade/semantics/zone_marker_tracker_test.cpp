@@ -130,6 +130,18 @@ TEST(TextEvidence, ViewsOutvoteAWrongOne) {
   EXPECT_GT(evidence.best().probability, 0.99);
 }
 
+TEST(TextEvidence, PartsSpeakForTheWhole) {
+  TextEvidence evidence;
+  for (const char* part : {"12", "2F", "12"}) evidence.add({{part, 0.9}});
+  evidence.add({{"12F", 0.9}});
+  EXPECT_EQ(evidence.best().text, "12F");
+  // But a letter too many, once, does not outvote a short text.
+  TextEvidence whole;
+  for (int k = 0; k < 6; ++k) whole.add({{"B1", 0.9}});
+  whole.add({{"B17", 0.9}});
+  EXPECT_EQ(whole.best().text, "B1");
+}
+
 TEST(ZoneMarkerTracker, WhatNobodyReadsIsNotTold) {
   ZoneMarkerTracker tracker({});
   for (int k = 0; k < 20; ++k) {
