@@ -56,15 +56,14 @@ Result<std::unique_ptr<ZoneMarkerFrontEnd>> ZoneMarkerFrontEnd::create(
   if (!options.enabled) return none;
   for (const auto& [named, own] : {std::pair(&options.network, "view_segmentation"),
                                    std::pair(&options.reader, "zone_text")}) {
-    if (!named->empty() || findModel(own)) continue;
+    if (namedOrOwnModel(*named, own)) continue;
     logInfo("no zone markers: the network {} is not installed", own);
     return none;
   }
   Result<SegmentationNetwork> network =
       SegmentationNetwork::loadOrOwn(options.network, "view_segmentation");
   if (!network) return network.error();
-  Result<std::string> reader_path =
-      options.reader.empty() ? findModel("zone_text") : Result<std::string>(options.reader);
+  const Result<std::string> reader_path = namedOrOwnModel(options.reader, "zone_text");
   if (!reader_path) return reader_path.error();
   Result<ZoneTextReader> reader = ZoneTextReader::load(*reader_path);
   if (!reader) return reader.error();

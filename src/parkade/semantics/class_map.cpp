@@ -79,6 +79,10 @@ Result<ClassMap> readClassMap(const std::string& path) {
   return parseYamlFile<ClassMap>(path, [&](const YamlNode& root) { return parse(root, path); });
 }
 
+Result<std::string> namedOrOwnModel(const std::string& path, const std::string& own_name) {
+  return path.empty() ? findModel(own_name) : Result<std::string>(path);
+}
+
 Result<std::string> findModel(const std::string& name) {
   std::vector<std::string> folders;
   if (const char* folder = std::getenv("PARKADE_MODELS")) folders.emplace_back(folder);

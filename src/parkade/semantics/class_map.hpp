@@ -34,4 +34,7 @@ Result<ClassMap> readClassMap(const std::string& path);
 /// with the places looked at.
 Result<std::string> findModel(const std::string& name);
 
+/// The user's file where one is named, else Parkade's own of that name.
+Result<std::string> namedOrOwnModel(const std::string& path, const std::string& own_name);
+
 }  // namespace parkade

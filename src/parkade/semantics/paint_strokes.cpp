@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/semantics/paint_strokes.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <numeric>
 #include <vector>
 
 #include "parkade/semantics/marking_pieces.hpp"

@@ -98,10 +98,9 @@ const ClassMap& SegmentationNetwork::classMap() const {
 
 Result<SegmentationNetwork> SegmentationNetwork::loadOrOwn(const std::string& class_map_path,
                                                            const std::string& own_name) {
-  if (!class_map_path.empty()) return load(class_map_path);
-  const Result<std::string> own = findModel(own_name);
-  if (!own) return own.error();
-  return load(*own);
+  const Result<std::string> path = namedOrOwnModel(class_map_path, own_name);
+  if (!path) return path.error();
+  return load(*path);
 }
 
 Result<SegmentationNetwork> SegmentationNetwork::load(const std::string& class_map_path) {

@@ -27,7 +27,7 @@ class SegmentationNetwork {
   /// what is wrong: no such file, no ONNX, an input of another size, another number of classes.
   static Result<SegmentationNetwork> load(const std::string& class_map_path);
 
-  /// The user's network where a class map is named, else Parkade's own of that name (findModel).
+  /// The user's network where a class map is named, else Parkade's own of that name.
   static Result<SegmentationNetwork> loadOrOwn(const std::string& class_map_path,
                                                const std::string& own_name);
 

@@ -66,8 +66,8 @@ inline constexpr int kZonePatchHeight = 40;
 /// thus how the faces stand; no size need be known.
 ///
 /// labels: CV_8UC1 (SemanticClass), of any size; the picture that the camera gave, shrunk. mask:
-/// CV_8UC1 of the camera's picture, 0 where the own car is; may be empty. T_level_cam: only its
-/// rotation is used; axes with z up.
+/// CV_8UC1 of the camera's picture, 0 where the own car is; may be empty. R_level_cam: from the
+/// camera to axes with z up.
 std::vector<ZoneMarkerSight> findZoneMarkers(const cv::Mat& labels, const cv::Mat& image,
                                              const cv::Mat& mask, const Camera& camera,
                                              const SO3& R_level_cam,
