@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "parkade/sim/render/exactness_support.hpp"
+#include "parkade/sim/render/paint_truth.hpp"
 #include "parkade/sim/world/floor_surface.hpp"
 #include "parkade/sim/world/generate.hpp"
 #include "parkade/sim/world/polygon.hpp"
@@ -163,46 +164,6 @@ TEST_P(PaperGarage, CornersOfMarkingsLieWhereTheyProject) {
   RecordProperty("worst_px", std::to_string(worst));
 }
 
-/// Whether a point lies outside the polygon's box by more than a margin.
-bool isFar(const Polygon& polygon, const Eigen::Vector2d& p, double margin) {
-  const auto beyond = [&](int axis, double sign) {
-    return std::all_of(polygon.begin(), polygon.end(), [&](const Eigen::Vector2d& q) {
-      return sign * (p[axis] - q[axis]) > margin;
-    });
-  };
-  return beyond(0, 1.0) || beyond(0, -1.0) || beyond(1, 1.0) || beyond(1, -1.0);
-}
-
-/// The distance from a point to a polygon's border.
-double borderDistance(const Polygon& polygon, const Eigen::Vector2d& p) {
-  double nearest = 1e9;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Eigen::Vector2d& a = polygon[i];
-    const Eigen::Vector2d edge = polygon[(i + 1) % polygon.size()] - a;
-    const double s = std::clamp((p - a).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
-    nearest = std::min(nearest, (p - a - s * edge).norm());
-  }
-  return nearest;
-}
-
-/// The class that the markings give a place on the floor; unknown near any border.
-SemanticClass paintAt(const Eigen::Vector2d& p) {
-  constexpr double kMargin = 0.02;  // m
-  SemanticClass found = SemanticClass::kFloor;
-  for (const Marking& marking : paperGarage().markings) {
-    for (const Polygon& polygon : marking.polygons) {
-      if (isFar(polygon, p, kMargin)) continue;
-      if (borderDistance(polygon, p) < kMargin) return SemanticClass::kUnknown;
-      if (!contains(polygon, p)) continue;
-      if (found != SemanticClass::kFloor && found != marking.semantic_class) {
-        return SemanticClass::kUnknown;  // two kinds of paint, one over the other
-      }
-      found = marking.semantic_class;
-    }
-  }
-  return found;
-}
-
 TEST_P(PaperGarage, LabelsAgreeWithGeometry) {
   const int index = GetParam();
   const Camera camera = test::models()[static_cast<std::size_t>(index)].make();
@@ -210,6 +171,7 @@ TEST_P(PaperGarage, LabelsAgreeWithGeometry) {
   const SE3 T_world_cam = lookAt(rectangles(3)[1][0], 0.6, 3.0);
   const TruthImages truth =
       renderer.renderTruth(index, T_world_cam, *renderer.moment(0.0, std::nullopt));
+  const test::PaintTruth paint(paperGarage());
   int on_floor = 0;
   int on_paint = 0;
   int on_pillars = 0;
@@ -222,15 +184,11 @@ TEST_P(PaperGarage, LabelsAgreeWithGeometry) {
       const auto label = static_cast<SemanticClass>(truth.labels.at<std::uint8_t>(y, x));
       const double above = p.z() - paperGarage().floorHeight(p.head<2>());
       if (label == SemanticClass::kPillar || label == SemanticClass::kZoneMarker) {
-        const bool inside = std::any_of(
-            paperGarage().pillars.begin(), paperGarage().pillars.end(), [&](const Pillar& pillar) {
-              const Eigen::Vector2d d = (p.head<2>() - pillar.center).cwiseAbs();
-              return d.x() < 0.5 * pillar.size.x() + 0.03 && d.y() < 0.5 * pillar.size.y() + 0.03;
-            });
-        EXPECT_TRUE(inside) << x << ", " << y << ": no pillar at " << p.transpose();
+        EXPECT_TRUE(test::inPillar(paperGarage(), p.head<2>()))
+            << x << ", " << y << ": no pillar at " << p.transpose();
         ++on_pillars;
       } else if (std::abs(above) < 1e-3) {
-        const SemanticClass expected = paintAt(p.head<2>());
+        const SemanticClass expected = paint.at(p.head<2>());
         if (expected == SemanticClass::kUnknown || label == SemanticClass::kWall) continue;
         EXPECT_EQ(static_cast<int>(label), static_cast<int>(expected))
             << x << ", " << y << " at " << p.transpose();
