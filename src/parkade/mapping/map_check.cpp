@@ -9,16 +9,14 @@
 #include <cmath>
 #include <set>
 
+#include "parkade/geometry/planar.hpp"
+
 namespace parkade {
 namespace {
 
 using Polygon = std::vector<Eigen::Vector2d>;
 
 constexpr double kFarthest = 1e5;  // m; no garage is that large
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 Polygon counterClockwise(Polygon polygon) {
   if (signedArea(polygon) < 0.0) std::reverse(polygon.begin(), polygon.end());

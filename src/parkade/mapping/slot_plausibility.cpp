@@ -4,15 +4,13 @@
 
 #include <algorithm>
 
+#include "parkade/geometry/planar.hpp"
+
 namespace parkade {
 namespace {
 
 using Eigen::Vector2d;
 using Corners = std::array<Vector2d, 4>;
-
-double cross(const Vector2d& a, const Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 Corners within(const Corners& corners) {
   constexpr double kShare = 0.2;

@@ -6,16 +6,13 @@
 #include <cmath>
 #include <utility>
 
+#include "parkade/geometry/planar.hpp"
 #include "parkade/semantics/marking_objects.hpp"
 
 namespace parkade {
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 // Points in the order in which a viewer sweeps over them, with the nearest one of each direction.
 Points sweep(const Points& points, const Eigen::Vector2d& viewer) {

@@ -22,7 +22,7 @@ struct SlotOptions {
   double max_parallel_depth_m = 3.0;
   double usual_depth_m = 5.0;
   double usual_parallel_depth_m = 2.2;
-  double min_confidence = 0.5;
+  double min_confidence = 0.7;
 
   void visit(OptionVisitor& v) {
     v.field("min_width_m", min_width_m, "m",
@@ -52,11 +52,12 @@ struct FloorSigma {
 };
 
 /// Finds parking slots: two marks (slot_marks.hpp) whose side lines run side by side, as far apart
-/// as the standards make slots, with nothing painted in between and room to drive in front. Of
-/// slots that overlap the likelier one is told. Corners lie where the lines' middles meet; their
-/// covariance holds the picture's noise and the errors of the levelling, which move both corners
-/// together. Whether a slot is free comes from the labels inside (slot_occupancy.hpp).
-/// labels must be those of bev (checked); segments from extractLines.
+/// as the standards make slots (slot_candidates.hpp), with nothing painted in between, room to
+/// drive in front and no better explanation beside them (slot_ranking.hpp). Of slots that overlap
+/// the likelier one is told. Corners lie where the lines' middles meet; their covariance holds the
+/// picture's noise and the errors of the levelling, which move both corners together. Whether a
+/// slot is free comes from the labels inside (slot_occupancy.hpp). labels must be those of bev
+/// (checked); segments from extractLines.
 std::vector<SlotObservation> extractSlots(const BevImage& bev, const BevLabels& labels,
                                           const std::vector<LineSegment>& segments,
                                           const BevViews& views, const FloorSigma& sigma,

@@ -12,8 +12,8 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kMeet = 0.35;      // m: lines that end this near to each other meet
-constexpr double kLeastMet = 0.4;   // m of side line to see, where another line meets it
-constexpr double kLeastOpen = 0.7;  // the same without
+constexpr double kLeastMet = 0.25;  // m of side line to see, where another line meets it
+constexpr double kLeastOpen = 0.5;  // the same without
 constexpr double kSteepest = 0.5;   // sine of the least angle between lines that meet
 constexpr double kBeyond = 0.9;     // m in front of an entrance without its side going on
 
@@ -23,6 +23,7 @@ struct Stroke {
   Vector2d along;
   double length = 0.0;
   double width = 0.0;
+  bool is_bar = false;  // of a T: short, and met between its ends
 
   [[nodiscard]] Vector2d normal() const { return {-along.y(), along.x()}; }
 };
@@ -129,6 +130,9 @@ class MarkFinder {
       for (std::size_t j = 0; j < strokes_.size(); ++j) {
         if (i != j) meet(i, j);
       }
+    }
+    for (std::size_t i = 0; i < strokes_.size(); ++i) {
+      if (strokes_[i].is_bar) continue;
       openEnd(i, 1.0);
       openEnd(i, -1.0);
     }
@@ -139,7 +143,7 @@ class MarkFinder {
   // Where line j meets side line i.
   void meet(std::size_t i, std::size_t j) {
     const Stroke& side = strokes_[i];
-    const Stroke& other = strokes_[j];
+    Stroke& other = strokes_[j];
     const double sine = side.along.x() * other.along.y() - side.along.y() * other.along.x();
     if (std::abs(sine) < kSteepest) return;
     const Vector2d between = other.begin - side.begin;
@@ -150,6 +154,11 @@ class MarkFinder {
     mark.p = side.begin + s * side.along;
     // Lines that only come near to each other have floor between them.
     if (!reaches(side, s, mark.p) || !reaches(other, t, mark.p)) return;
+    constexpr double kLongestBar = 0.9;
+    constexpr double kWithin = 0.15;
+    if (other.length < kLongestBar && t > kWithin && t < other.length - kWithin) {
+      other.is_bar = true;
+    }
     mark.across = other.along;
     mark.side = static_cast<int>(i);
     mark.width = side.width;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "parkade/core/check.hpp"
+#include "parkade/geometry/planar.hpp"
 
 namespace parkade::sim {
 namespace {
@@ -22,10 +23,6 @@ struct Stretch {
   double start = 0.0;
   double end = 0.0;
 };
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 double turnBetween(const Stretch& in, const Stretch& out) {
   return std::atan2(cross(in.along, out.along), in.along.dot(out.along));
