@@ -158,12 +158,20 @@ Result<Rig> parseRig(const std::string& text, const std::string& path) {
   }
 }
 
+// Whole or not at all: under another name first.
 Status writeRig(const Rig& rig, const std::string& path) {
-  std::ofstream stream(path, std::ios::binary | std::ios::trunc);
+  const std::string part = path + ".tmp";
+  std::ofstream stream(part, std::ios::binary | std::ios::trunc);
   if (!stream) return Error{fmt::format("{}: cannot open the file for writing", path)};
   stream << writeRigNode(rig, path);
   stream.close();
-  if (!stream) return Error{fmt::format("{}: writing failed; is the disk full?", path)};
+  std::error_code code;
+  if (!stream) {
+    fs::remove(part, code);
+    return Error{fmt::format("{}: writing failed; is the disk full?", path)};
+  }
+  fs::rename(part, path, code);
+  if (code) return Error{fmt::format("{}: cannot write the file: {}", path, code.message())};
   return {};
 }
 

@@ -167,11 +167,7 @@ Status SequenceWriter::begin() {
     return status;
   }
   if (Status status = copyMasks(); !status) return status;
-  const std::string rig_path = joinPath(path_, "rig.yaml");
-  if (Status status = writeRig(rig_, rig_path + ".tmp"); !status) return status;
-  std::error_code code;
-  fs::rename(rig_path + ".tmp", rig_path, code);
-  if (code) return Error{fmt::format("{}: cannot write the file: {}", rig_path, code.message())};
+  if (Status status = writeRig(rig_, joinPath(path_, "rig.yaml")); !status) return status;
   for (const RigCamera& camera : rig_.cameras) {
     if (Status status = openCamera(camera.name); !status) return status;
   }
