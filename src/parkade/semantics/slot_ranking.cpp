@@ -64,6 +64,7 @@ class SlotRanking {
     s += 1.5 * std::clamp(2.0 * facing, -1.0, 1.0);
     s -= 2.0 * entrance.hidden;
     s -= 20.0 * laneLineAlong(c);
+    if (goesOnAsLaneLine(*c.left) || goesOnAsLaneLine(*c.right)) s -= 4.0;
     switch (c.marking) {
       case SlotMarking::kClosed:
       case SlotMarking::kT:
@@ -75,6 +76,8 @@ class SlotRanking {
       case SlotMarking::kOpen:
         break;
     }
+    if (hasWheelStopInFront(c)) s -= 6.0;
+    if (liesBesideTheWay(c)) s -= 1.5;
     if (c.depth > 0.0) s += 0.5;
     // Long and narrow ones are entered from the long side.
     if (c.shape == SlotShape::kPerpendicular && c.depth > 2.45 * length) s -= 1.5;
@@ -117,6 +120,34 @@ class SlotRanking {
     return most;
   }
 
+  // Wheels stop at the rear: what has one behind its first line is seen from there.
+  [[nodiscard]] bool hasWheelStopInFront(const SlotCandidate& c) const {
+    constexpr double kFrom = 0.2;  // of the slot's depth
+    constexpr double kTo = 0.3;
+    int stops = 0;
+    int samples = 0;
+    for (double b = 0.04; b < kTo; b += 0.02) {
+      for (double a = kFrom; a <= 1.0 - kFrom; a += 0.05) {
+        const Vector2d p = (1.0 - a) * c.corners[0] + a * c.corners[1];
+        const Vector2d q = (1.0 - a) * c.corners[3] + a * c.corners[2];
+        if (probe_.at((1.0 - b) * p + b * q) == SemanticClass::kWheelStop) ++stops;
+        ++samples;
+      }
+    }
+    return stops > samples / 40;
+  }
+
+  // Whether the car, driving on, would pass beside the way into the slot, not over it: its aisle
+  // would be another one, and the slot is more likely one along this aisle seen from its end.
+  [[nodiscard]] bool liesBesideTheWay(const SlotCandidate& c) const {
+    constexpr double kAlong = 0.8;  // cosine
+    constexpr double kAside = 1.0;  // m
+    if (std::abs(c.inward.x()) < kAlong) return false;
+    const Vector2d to_car = probe_.labels().geometry.center - 0.5 * (c.left->p + c.right->p);
+    const double aside = std::abs(to_car.dot(c.front().normalized()));
+    return aside > 0.5 * c.front().norm() + kAside;
+  }
+
   // Share of the entrance along which a lane line runs: those end where slots begin.
   [[nodiscard]] double laneLineAlong(const SlotCandidate& c) const {
     constexpr double kFromCorner = 0.15;  // m
@@ -134,6 +165,26 @@ class SlotRanking {
       }
     }
     return static_cast<double>(painted) / std::max(1, count);
+  }
+
+  // Whether the side line of a mark is an aisle's edge: beyond the mark a lane line carries it on.
+  // That makes it the entrance of a slot along the aisle.
+  [[nodiscard]] bool goesOnAsLaneLine(const SlotMark& mark) const {
+    constexpr double kFrom = 0.15;  // m
+    constexpr double kTo = 1.6;
+    constexpr double kLeast = 0.5;  // m of lane line
+    const double step = probe_.labels().geometry.metres_per_px;
+    const Vector2d n(-mark.inward.y(), mark.inward.x());
+    double painted = 0.0;
+    for (double d = kFrom; d < kTo; d += step) {
+      for (int k = -2; k <= 2; ++k) {
+        if (probe_.at(mark.p - d * mark.inward + k * step * n) != SemanticClass::kLaneLine)
+          continue;
+        painted += step;
+        break;
+      }
+    }
+    return painted > kLeast;
   }
 
   // What the other candidates say against each one.
