@@ -61,7 +61,7 @@ class SlotRanking {
     const double facing = to_car.dot(ahead) / std::max(1.0, to_car.norm());
     const LabelProbe::Shares entrance = probe_.along(c.left->p + 0.3 * u, c.right->p - 0.3 * u);
     double s = -1.0 + seen_sides + 2.0 * way.floor - 12.0 * way.paint - 10.0 * paintAcross(c);
-    s += 1.5 * std::clamp(2.0 * facing, -1.0, 1.0);
+    s += (facing > 0.0 ? 1.5 : 3.0) * std::clamp(2.0 * facing, -1.0, 1.0);
     s -= 2.0 * entrance.hidden;
     s -= 20.0 * laneLineAlong(c);
     if (goesOnAsLaneLine(*c.left) || goesOnAsLaneLine(*c.right)) s -= 4.0;
