@@ -82,15 +82,17 @@ class Samples:
 
 
 def cut(image, labels, centre, size, rng, straight):
-    """A crop of size (width, height) around centre. straight: turned by quarters only (exact
-    pixels), else by any angle and scaled; mirrored half the time."""
+    """A crop of size (width, height) around centre. straight: the pixels themselves, mirrored either
+    way; else turned and scaled: half of these by any angle, half by some degrees, since cars stand
+    along the lines or across them most of the time."""
     width, height = size
     if straight is None:
         angle, scale = 0.0, rng.uniform(0.75, 1.15)
     elif straight:
-        return turned_cut(image, labels, centre, size, rng.integers(4), rng.random() < 0.5)
+        return mirrored_cut(image, labels, centre, size, rng.random() < 0.5, rng.random() < 0.5)
     else:
-        angle, scale = rng.uniform(-np.pi, np.pi), np.exp(rng.normal(0.0, 0.12))
+        angle = rng.uniform(-np.pi, np.pi) if rng.random() < 0.5 else rng.normal(0.0, 0.15)
+        scale = np.exp(rng.normal(0.0, 0.12))
     mirror = -1.0 if rng.random() < 0.5 else 1.0
     c, s = np.cos(angle) / scale, np.sin(angle) / scale
     v, u = np.mgrid[0:height, 0:width].astype(np.float32)
@@ -99,7 +101,7 @@ def cut(image, labels, centre, size, rng, straight):
     return sample_image(image, x, y), sample_labels(labels, x, y)
 
 
-def turned_cut(image, labels, centre, size, quarters, mirrored):
+def mirrored_cut(image, labels, centre, size, upside_down, left_right):
     """The pixels themselves, of a square."""
     side = size[0]
     left, top = (int(np.floor(value)) - side // 2 for value in centre)
@@ -109,8 +111,9 @@ def turned_cut(image, labels, centre, size, quarters, mirrored):
     classes = np.full((side, side), IGNORE, np.uint8)
     out[y0 - top : y1 - top, x0 - left : x1 - left] = image[y0:y1, x0:x1]
     classes[y0 - top : y1 - top, x0 - left : x1 - left] = labels[y0:y1, x0:x1]
-    out, classes = np.rot90(out, quarters), np.rot90(classes, quarters)
-    return (out[:, ::-1], classes[:, ::-1]) if mirrored else (out, classes)
+    if upside_down:
+        out, classes = out[::-1], classes[::-1]
+    return (out[:, ::-1], classes[:, ::-1]) if left_right else (out, classes)
 
 
 def sample_labels(labels, x, y):

@@ -11,7 +11,7 @@ import torch
 from torch import nn
 from torch.nn import functional as F
 
-WIDTHS = {"bev": [16, 32, 48, 64, 64], "raw": [16, 24, 32, 48, 48]}
+WIDTHS = {"bev": [16, 32, 64, 96, 128], "raw": [16, 24, 48, 64, 96]}
 
 
 class ConvBlock(nn.Sequential):
@@ -52,6 +52,23 @@ class UNet(nn.Module):
 
 def make_network(name, num_classes):
     return UNet(num_classes, WIDTHS[name])
+
+
+def grown(before, now):
+    """The state dict `now` of a fresh network with the weights of a narrower or equal one in it. What
+    the old channels compute stays as it was: new ones feed nothing into them until training says so."""
+    state = {}
+    for key, fresh in now.items():
+        old = before.get(key)
+        if old is None or any(a > b for a, b in zip(old.shape, fresh.shape)):
+            state[key] = fresh
+            continue
+        value = fresh.clone()
+        if value.dim() == 4:
+            value[: old.shape[0]] = 0.0
+        value[tuple(slice(0, n) for n in old.shape)] = old
+        state[key] = value
+    return state
 
 
 def full_size(logits):

@@ -25,7 +25,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from augment import augment  # noqa: E402
 from classes import IGNORE, NETWORKS  # noqa: E402
 from dataset import Samples, cut  # noqa: E402
-from network import full_size, make_network, to_input  # noqa: E402
+from network import full_size, grown, make_network, to_input  # noqa: E402
 from scores import Confusion, table  # noqa: E402
 
 
@@ -43,7 +43,7 @@ def make_batch(samples, rng, batch, size, network):
             height, width = samples.labels[index].shape
             centre = (0.5 * width + rng.uniform(-40, 40), 0.5 * height + rng.uniform(-20, 20))
         else:
-            straight = rng.random() < 0.5
+            straight = rng.random() < 0.6
         image, label = cut(samples.images[index], samples.labels[index], np.asarray(centre), size,
                            rng, straight)
         images.append(augment(rng, image, label, floor))
@@ -195,10 +195,7 @@ def main():
         average.state, step, spent = state["average"], state["step"], state["spent"]
     elif a.warm_start:
         before = torch.load(a.warm_start)["average"]
-        now = network.state_dict()
-        network.load_state_dict({key: before[key] if key in before and
-                                 before[key].shape == value.shape else value
-                                 for key, value in now.items()})
+        network.load_state_dict(grown(before, network.state_dict()))
         average = Average(network, 0.998)
     log = open(os.path.join(a.out, "log.txt"), "a", buffering=1)
 
