@@ -20,10 +20,13 @@ PackedLabels packLabels(const SemanticFrame& frame) {
   const BevGeometry& g = frame.labels.geometry;
   const cv::Mat& labels = frame.labels.labels;
   const cv::Mat& confidence = frame.labels.confidence;
+  const cv::Mat& smear = frame.smear;
   PARKADE_CHECK(labels.type() == CV_8UC1 && labels.rows == g.height_px && labels.cols == g.width_px,
                 "labels of {} x {} pixels, type {}", labels.cols, labels.rows, labels.type());
   PARKADE_CHECK(confidence.empty() || confidence.size() == labels.size(),
                 "confidence of {} x {} pixels", confidence.cols, confidence.rows);
+  PARKADE_CHECK(smear.empty() || smear.size() == labels.size(), "smear of {} x {} pixels",
+                smear.cols, smear.rows);
   PackedLabels packed;
   packed.geometry = g;
   packed.pixels.resize(static_cast<std::size_t>(g.width_px) *
@@ -32,7 +35,9 @@ PackedLabels packLabels(const SemanticFrame& frame) {
   for (int v = 0; v < g.height_px; ++v) {
     const std::uint8_t* label = labels.ptr<std::uint8_t>(v);
     const std::uint8_t* sure = confidence.empty() ? nullptr : confidence.ptr<std::uint8_t>(v);
+    const std::uint8_t* smeared = smear.empty() ? nullptr : smear.ptr<std::uint8_t>(v);
     for (int u = 0; u < g.width_px; ++u, ++at) {
+      if (smeared != nullptr && smeared[u] != 0) continue;
       const int level = sure == nullptr ? PackedLabels::kConfidenceLevels - 1 : sure[u] >> 5;
       packed.pixels[at] =
           label[u] == 0 ? 0 : static_cast<std::uint8_t>((label[u] & 0x1F) | (level << 5));

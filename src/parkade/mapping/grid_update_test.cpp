@@ -29,6 +29,20 @@ TEST(FrameEvidence, WholeStepsEqualAddEvidence) {
   }
 }
 
+TEST(FrameEvidence, SmearSaysNothing) {
+  SemanticFrame frame;
+  const BevGeometry& g = frame.labels.geometry;
+  frame.labels.labels = cv::Mat(g.height_px, g.width_px, CV_8UC1, cv::Scalar(1));
+  frame.labels.labels.at<std::uint8_t>(7, 9) = static_cast<std::uint8_t>(SemanticClass::kPillar);
+  frame.smear = cv::Mat(g.height_px, g.width_px, CV_8UC1, cv::Scalar(0));
+  frame.smear.at<std::uint8_t>(7, 9) = 255;
+  const auto at = static_cast<std::size_t>(7 * g.width_px + 9);
+  EXPECT_EQ(packLabels(frame).pixels[at], 0);
+  EXPECT_NE(packLabels(frame).pixels[at + 1], 0);
+  frame.smear = cv::Mat();
+  EXPECT_EQ(PackedLabels::classOf(packLabels(frame).pixels[at]), SemanticClass::kPillar);
+}
+
 TEST(LocalMap, ShowsWhatIsAroundAndForgetsWhatLeaves) {
   const PlanObserver observer(makePlan(2, 60.0, 0.5, 1), {});
   LocalMapOptions options;

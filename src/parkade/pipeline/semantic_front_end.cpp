@@ -30,6 +30,7 @@ struct SemanticFrontEnd::Impl {
   GroundPlaneEstimator ground;
   BevViews bev_views;
   std::unique_ptr<ObjectExtractor> objects;  // made when the masks are known
+  std::unique_ptr<SmearFinder> smear;
   AgentTracker tracker;
   std::unique_ptr<ZoneMarkerFrontEnd> zone_markers;  // null: there are no networks for it
   // Taken by addOdometry(), used by look(), which may work in another thread meanwhile.
@@ -64,6 +65,8 @@ Result<std::unique_ptr<SemanticFrontEnd>> SemanticFrontEnd::create(
   impl->bev_views = viewsOf(impl->stitcher, rig);
   impl->objects = std::make_unique<ObjectExtractor>(impl->stitcher.geometry(), impl->bev_views,
                                                     options.objects);
+  impl->smear =
+      std::make_unique<SmearFinder>(impl->stitcher.geometry(), impl->bev_views, options.smear);
   auto zone_markers = ZoneMarkerFrontEnd::create(rig, options.zone_markers);
   if (!zone_markers) return zone_markers.error();
   impl->zone_markers = std::move(zone_markers).value();
@@ -125,6 +128,7 @@ Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames) {
   FoundObjects found = m.objects->extract(frame.labels, frame.attitude_sigma);
   frame.objects = std::move(found.objects);
   frame.moving = m.tracker.update(found.agents, SE2::fromSE3(view.now.T_odom_vehicle), frames.t_ns);
+  frame.smear = m.smear->find(frame.labels);
   m.feature_clock.add(since(begin));
   if (m.zone_markers == nullptr) return frame;
   begin = Clock::now();

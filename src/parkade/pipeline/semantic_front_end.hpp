@@ -17,6 +17,7 @@
 #include "parkade/semantics/line_extraction.hpp"
 #include "parkade/semantics/object_extraction.hpp"
 #include "parkade/semantics/slot_extraction.hpp"
+#include "parkade/semantics/smear_finder.hpp"
 #include "parkade/types/landmark.hpp"
 #include "parkade/types/pose_estimate.hpp"
 #include "parkade/types/semantic_features.hpp"
@@ -33,6 +34,7 @@ struct SemanticFrontEndOptions {
   LineOptions slot_lines;
   SlotOptions slots;
   ObjectOptions objects;
+  SmearOptions smear;
   AgentTrackerOptions agents;
   ZoneMarkerFrontEndOptions zone_markers;
 
@@ -48,6 +50,7 @@ struct SemanticFrontEndOptions {
     v.group("slot_lines", slot_lines);
     v.group("slots", slots);
     v.group("objects", objects);
+    v.group("smear", smear);
     v.group("agents", agents);
     v.group("zone_markers", zone_markers);
   }

@@ -93,6 +93,9 @@ struct MovingObservation {
 /// All semantic features of one frame set.
 struct SemanticFrame {
   BevLabels labels;
+  /// CV_8UC1 of the labels' size, or empty: 255 where a label is what a picture draws of something
+  /// upright behind its foot, and says nothing of the ground there.
+  cv::Mat smear;
   GroundAttitude attitude;      ///< that the picture was levelled with
   double attitude_sigma = 0.0;  ///< rad, of its pitch and roll
   std::vector<LinePoint> line_points;

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/semantics/smear_finder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "parkade/core/check.hpp"
+#include "parkade/types/semantic_class.hpp"
+
+namespace parkade {
+namespace {
+
+// Of the sight line up to a pixel.
+struct Sight {
+  float structure = 0.0F;  // m of it, as far as blocked: since it was first met
+  float vehicle = 0.0F;    // m
+  bool blocked = false;    // by structure, for good: nothing on the ground is seen behind
+  bool behind_car = false;
+};
+
+}  // namespace
+
+SmearFinder::SmearFinder(const BevGeometry& geometry, const BevViews& views,
+                         const SmearOptions& options)
+    : geometry_(geometry), options_(options) {
+  PARKADE_CHECK(views.view_of.cols == geometry.width_px && views.view_of.rows == geometry.height_px,
+                "views of {} x {} px", views.view_of.cols, views.view_of.rows);
+  std::vector<float> distance;
+  for (int v = 0; v < geometry.height_px; ++v) {
+    for (int u = 0; u < geometry.width_px; ++u) {
+      const auto index = views.view_of.at<std::uint8_t>(v, u);
+      if (index >= views.views.size()) continue;
+      const Eigen::Vector2d d = geometry.toPixel(views.views[index].foot) - Eigen::Vector2d(u, v);
+      Step step;
+      step.pixel = v * geometry.width_px + u;
+      distance.push_back(static_cast<float>(d.norm()));
+      // The longer component goes one pixel, so that no pixel is its own neighbour.
+      const double longer = std::max(std::abs(d.x()), std::abs(d.y()));
+      if (longer >= 1.0) {
+        const int bu = u + static_cast<int>(std::lround(d.x() / longer));
+        const int bv = v + static_cast<int>(std::lround(d.y() / longer));
+        if (bu >= 0 && bv >= 0 && bu < geometry.width_px && bv < geometry.height_px) {
+          step.before = bv * geometry.width_px + bu;
+          step.length = static_cast<float>(d.norm() / longer * geometry.metres_per_px);
+        }
+      }
+      outwards_.push_back(step);
+    }
+  }
+  std::vector<std::size_t> order(outwards_.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return distance[a] < distance[b]; });
+  std::vector<Step> sorted;
+  sorted.reserve(order.size());
+  for (const std::size_t i : order) sorted.push_back(outwards_[i]);
+  outwards_ = std::move(sorted);
+}
+
+cv::Mat SmearFinder::find(const BevLabels& labels) const {
+  PARKADE_CHECK(labels.labels.cols == geometry_.width_px &&
+                    labels.labels.rows == geometry_.height_px && labels.labels.isContinuous(),
+                "labels of {} x {} px", labels.labels.cols, labels.labels.rows);
+  std::vector<Sight> sights(labels.labels.total());
+  cv::Mat smear(labels.labels.size(), CV_8UC1, cv::Scalar(0));
+  const auto least = static_cast<float>(options_.least_m);
+  for (const Step& step : outwards_) {
+    Sight sight;
+    if (step.before >= 0) sight = sights[static_cast<std::size_t>(step.before)];
+    const auto semantic_class = static_cast<SemanticClass>(labels.labels.data[step.pixel]);
+    const bool wall = semantic_class == SemanticClass::kWall;
+    const bool structure = wall || semantic_class == SemanticClass::kPillar ||
+                           semantic_class == SemanticClass::kZoneMarker;
+    if (semantic_class == SemanticClass::kVehicle) {
+      sight.vehicle += step.length;
+      sight.behind_car = sight.behind_car || (!sight.blocked && sight.vehicle >= least);
+    } else {
+      sight.vehicle = 0.0F;
+    }
+    if (structure || sight.blocked) {
+      sight.structure += step.length;
+      sight.blocked = sight.blocked || sight.structure >= least;
+    } else {
+      sight.structure = 0.0F;
+    }
+    sights[static_cast<std::size_t>(step.pixel)] = sight;
+    const double depth = wall ? options_.wall_depth_m : options_.pillar_depth_m;
+    if (structure && (sight.behind_car || sight.structure > depth)) smear.data[step.pixel] = 255;
+  }
+  return smear;
+}
+
+}  // namespace parkade

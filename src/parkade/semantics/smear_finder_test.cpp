@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/semantics/smear_finder.hpp"
+
+#include <gtest/gtest.h>
+
+#include "parkade/semantics/features_test_support.hpp"
+#include "parkade/semantics/label_probe.hpp"
+
+namespace parkade {
+namespace {
+
+using Eigen::Vector2d;
+
+// A pillar's smear: a wedge from x = 4 outwards, as a camera in the picture's middle draws it.
+PaintedFloor smearedPillar() {
+  PaintedFloor floor;
+  floor.polygon({{4.0, -0.3}, {8.8, -0.9}, {8.8, 0.9}, {4.0, 0.3}}, SemanticClass::kPillar, 60);
+  return floor;
+}
+
+SmearFinder finderOf(const PaintedFloor& floor, const SmearOptions& options = {}) {
+  const BevGeometry& g = floor.labels.geometry;
+  return {g, BevViews::fromMiddle(g), options};
+}
+
+TEST(SmearFinder, KeepsTheNearEdgeOnly) {
+  PaintedFloor floor = smearedPillar();
+  floor.labels.labels.setTo(0, finderOf(floor).find(floor.labels));
+  const LabelProbe probe(floor.labels);
+  EXPECT_EQ(probe.at({4.1, 0.0}), SemanticClass::kPillar);
+  EXPECT_EQ(probe.at({4.5, 0.2}), SemanticClass::kPillar);
+  for (const double x : {4.8, 6.0, 8.5}) {
+    for (const double y : {-0.2, 0.0, 0.2}) {
+      EXPECT_EQ(probe.at({x, y}), SemanticClass::kUnknown) << x << ", " << y;
+    }
+  }
+  EXPECT_EQ(probe.at({5.0, 2.0}), SemanticClass::kFloor);
+}
+
+TEST(SmearFinder, HolesInASmearAreNoNewEdges) {
+  PaintedFloor floor = smearedPillar();
+  floor.polygon({{5.5, -0.9}, {6.5, -0.9}, {6.5, 0.9}, {5.5, 0.9}}, SemanticClass::kFloor, 90);
+  floor.labels.labels.setTo(0, finderOf(floor).find(floor.labels));
+  const LabelProbe probe(floor.labels);
+  EXPECT_EQ(probe.at({6.6, 0.0}), SemanticClass::kUnknown);
+  EXPECT_EQ(probe.at({6.0, 0.0}), SemanticClass::kFloor);  // only structure is doubted
+}
+
+TEST(SmearFinder, WhatACarHidesHasNoPlace) {
+  PaintedFloor floor = smearedPillar();
+  floor.polygon({{3.0, -1.0}, {4.0, -1.0}, {4.0, 0.0}, {3.0, 0.0}}, SemanticClass::kVehicle, 40);
+  floor.labels.labels.setTo(0, finderOf(floor).find(floor.labels));
+  const LabelProbe probe(floor.labels);
+  EXPECT_EQ(probe.at({4.2, -0.15}), SemanticClass::kUnknown);
+  EXPECT_EQ(probe.at({4.2, 0.15}), SemanticClass::kPillar);
+  EXPECT_EQ(probe.at({3.5, -0.5}), SemanticClass::kVehicle);
+}
+
+TEST(SmearFinder, WallsAreThinAndSpecksBlockNothing) {
+  PaintedFloor floor;
+  floor.polygon({{4.0, -3.0}, {9.0, -3.0}, {9.0, 3.0}, {4.0, 3.0}}, SemanticClass::kWall, 60);
+  floor.polygon({{-2.0, 0.0}, {-2.0, 0.1}, {-2.1, 0.1}, {-2.1, 0.0}}, SemanticClass::kPillar, 60);
+  floor.polygon({{-4.0, -0.3}, {-4.0, 0.3}, {-4.4, 0.3}, {-4.4, -0.3}}, SemanticClass::kPillar, 60);
+  floor.labels.labels.setTo(0, finderOf(floor).find(floor.labels));
+  const LabelProbe probe(floor.labels);
+  EXPECT_EQ(probe.at({4.2, 0.5}), SemanticClass::kWall);
+  EXPECT_EQ(probe.at({4.5, 0.5}), SemanticClass::kUnknown);
+  EXPECT_EQ(probe.at({-4.2, 0.05}), SemanticClass::kPillar);
+}
+
+}  // namespace
+}  // namespace parkade
