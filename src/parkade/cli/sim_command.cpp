@@ -88,6 +88,8 @@ void addSpecOptions(CLI::App& command, Arguments& arguments) {
   addField(command, arguments, "--lux", "lux", "LX", "Mean light on the floor, 1 to 5000");
   addField(command, arguments, "--occupancy", "occupancy", "SHARE",
            "Share of slots with a parked car, 0 to 1");
+  addField(command, arguments, "--one-way", "one_way", "SHARE",
+           "Share of a random garage's aisles that are one-way, 0 to 1 [0]");
   addPair(command, arguments, "--agents", "cars", "people", "CARS,PEOPLE",
           "Moving cars and walking people");
   addField(command, arguments, "--speed-kmh", "speed_kmh", "KMH", "Highest speed of the own car");

@@ -56,7 +56,14 @@ Status writeAgents(const sim::Simulation& simulation, const sim::Scene& scene,
 std::string specText(const sim::SimSpec& spec) {
   sim::SimSpec fixed = spec;
   fixed.threads = 1;  // the bytes do not depend on it
-  return dumpOptions(asOptions(fixed));
+  std::string text = dumpOptions(asOptions(fixed));
+  if (spec.one_way == 0.0) {
+    // As before there was this option: recordings of that time are still the same.
+    const std::string line = "one_way: 0\n";
+    if (const std::size_t at = text.find(line); at != std::string::npos)
+      text.erase(at, line.size());
+  }
+  return text;
 }
 
 }  // namespace parkade::cli

@@ -81,6 +81,7 @@ Result<std::shared_ptr<const Simulation>> Simulation::make(const SimSpec& spec) 
   garage_options.preset = spec.garage;
   garage_options.seed = spec.garage_seed;
   garage_options.occupancy = spec.occupancy;
+  garage_options.one_way = spec.one_way;
   Result<Garage> garage = generateGarage(garage_options);
   if (!garage) return garage.error();
   simulation->garage_ = std::move(garage).value();

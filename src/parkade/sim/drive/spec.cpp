@@ -24,6 +24,9 @@ void SimSpec::visit(OptionVisitor& v) {
   v.field("garage_seed", garage_seed, "", "Of the garage: layout, parked cars, wear.", 0, 1e9);
   v.field("lux", lux, "lx", "Mean illuminance of the drivable floor.", 1.0, 5000.0);
   v.field("occupancy", occupancy, "share", "Share of the slots with a parked car.", 0.0, 1.0);
+  v.field("one_way", one_way, "share",
+          "Share of a random garage's aisles that are one-way, as far as all stay in reach.", 0.0,
+          1.0);
   v.field("cars", cars, "count", "Cars that move about.", 0, 50);
   v.field("people", people, "count", "People who walk about.", 0, 100);
   v.field("speed_kmh", speed_kmh, "km/h", "Highest speed of the own car.", 2.0, 30.0);

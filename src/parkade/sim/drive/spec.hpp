@@ -19,6 +19,7 @@ struct SimSpec {
   int garage_seed = 1;
   double lux = 200.0;
   double occupancy = 0.6;
+  double one_way = 0.0;
   int cars = 2;
   int people = 3;
   double speed_kmh = 15.0;

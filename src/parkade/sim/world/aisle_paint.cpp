@@ -40,6 +40,7 @@ class StretchPainter {
     addCrossing();
     addBump();
     for (const bool backward : {false, true}) {
+      if (backward && edge_.one_way) break;
       addStopLine(backward);
       addTurnArrow(backward);
       addLimit(backward);
@@ -54,7 +55,7 @@ class StretchPainter {
 
   /// Directed frame; a position s from `from` becomes length - s when driven backward.
   [[nodiscard]] Frame2 lane(bool backward, double s) const {
-    const double side = backward ? 0.25 : -0.25;
+    const double side = edge_.one_way ? 0.0 : backward ? 0.25 : -0.25;
     return {frame_ * Eigen::Vector2d(s, side * edge_.width),
             frame_.heading + (backward ? M_PI : 0.0)};
   }
@@ -112,7 +113,7 @@ class StretchPainter {
     const double back = crossing + 0.45;  // from the stretch's end
     const double s = backward ? begin_ + back : end_ - back - kThick;
     const double y0 = backward ? 0.12 : -half() + 0.35;
-    const double y1 = backward ? half() - 0.35 : -0.12;
+    const double y1 = backward || edge_.one_way ? half() - 0.35 : -0.12;
     addMarking(garage_, SemanticClass::kStopLine, {rectangle(frame_, s, y0, s + kThick, y1)}, "",
                lane(backward, s + 0.5 * kThick), style_.line_colour);
     taken_[backward ? 1 : 0].push_back({s - 0.2, s + kThick + 0.2});
@@ -182,7 +183,7 @@ class StretchPainter {
   }
 
   void addCentreLine() {
-    if (!style_.centre_dashes) return;
+    if (!style_.centre_dashes || edge_.one_way) return;
     constexpr double kDash = 1.2;
     std::vector<Polygon> dashes;
     for (double s = begin_ + 0.8; s + kDash < end_ - 0.5; s += 3.0) {

@@ -7,6 +7,7 @@
 
 #include "parkade/core/random.hpp"
 #include "parkade/sim/world/layout.hpp"
+#include "parkade/sim/world/one_way.hpp"
 #include "parkade/sim/world/paint.hpp"
 #include "parkade/sim/world/style.hpp"
 
@@ -63,6 +64,16 @@ Result<Garage> generateGarage(const GarageOptions& options) {
   if (!(options.occupancy >= 0.0 && options.occupancy <= 1.0)) {
     return Error{fmt::format("occupancy {} is not between 0 and 1", options.occupancy)};
   }
+  if (!(options.one_way >= 0.0 && options.one_way <= 1.0)) {
+    return Error{fmt::format("one_way: a share of {} of the aisles is not between 0 and 1",
+                             options.one_way)};
+  }
+  if (options.one_way > 0.0 && options.preset != "random") {
+    return Error{
+        fmt::format("one_way: the aisles of garage '{}' are two-way; only those of random "
+                    "garages can be one-way",
+                    options.preset)};
+  }
   const auto seed = static_cast<std::uint64_t>(options.seed);
   const Random random = Random(seed).fork("garage");
   const GarageStyle style = makeStyle(options.preset, seed);
@@ -73,6 +84,9 @@ Result<Garage> generateGarage(const GarageOptions& options) {
       options.preset == "paper" ? paperGrid() : randomGrid(style, random.fork("grid"));
   const Layout layout = placeLayout(grid, style);
   buildFromLayout(layout, style, garage);
+  if (options.one_way > 0.0) {
+    makeOneWay(options.one_way, random.fork("one way"), garage.aisles);
+  }
   tiltFloor(options.preset == "paper", random.fork("floor"), garage);
   numberSlots(garage);
   paintSlots(layout, style, garage);

@@ -14,6 +14,7 @@ struct GarageOptions {
   std::string preset = "paper";
   int seed = 0;
   double occupancy = 0.6;
+  double one_way = 0.0;
 
   void visit(OptionVisitor& v) {
     v.field("preset", preset,
@@ -22,11 +23,14 @@ struct GarageOptions {
     v.field("seed", seed, "",
             "Of the layout (random), of the places of parked cars, of wear and dirt.", 0, 1e9);
     v.field("occupancy", occupancy, "share", "Share of the slots with a parked car.", 0.0, 1.0);
+    v.field("one_way", one_way, "share",
+            "Share of the aisles that are one-way (random), as far as all stay in reach.", 0.0,
+            1.0);
   }
 };
 
-/// Makes a garage. The same options give the same garage. Fails on an unknown preset or an
-/// occupancy outside 0 to 1.
+/// Makes a garage. The same options give the same garage. Fails on an unknown preset, an
+/// occupancy or share of one-way aisles outside 0 to 1, or one-way aisles in the preset "paper".
 Result<Garage> generateGarage(const GarageOptions& options);
 
 }  // namespace parkade::sim

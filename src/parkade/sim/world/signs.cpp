@@ -130,6 +130,7 @@ void addGuideSigns(const GarageStyle& style, Random random, Garage& garage) {
   constexpr double kHeight = 0.42;
   for (const AisleGraph::Edge& edge : garage.aisles.edges) {
     for (const bool backward : {false, true}) {
+      if (backward && edge.one_way) break;
       const int before = backward ? edge.to : edge.from;
       const int node = backward ? edge.from : edge.to;
       if (!random.chance(style.guide_share)) continue;

@@ -23,6 +23,7 @@ set(WORLD_SOURCES
     world/layout.cpp
     world/mesh_builder.cpp
     world/noise_texture.cpp
+    world/one_way.cpp
     world/paint_layer.cpp
     world/palette.cpp
     world/parked_cars.cpp
@@ -44,5 +45,6 @@ set(WORLD_TESTS
     world/floor_surface_test.cpp
     world/garage_json_test.cpp
     world/generate_test.cpp
+    world/one_way_test.cpp
     world/person_mesh_test.cpp
     world/scene_builder_test.cpp)
