@@ -6,27 +6,18 @@
 #include <array>
 #include <cmath>
 
-#include "parkade/core/check.hpp"
 #include "parkade/sim/render/parallel.hpp"
 #include "parkade/sim/render/reflection.hpp"
+#include "parkade/sim/render/tile_tracer.hpp"
 
 namespace parkade::sim {
 namespace {
 
-constexpr float kFar = 1.0e4F;
 constexpr int kTile = RayTable::kTile;
-constexpr int kTilePixels = kTile * kTile;
-constexpr int kMaxSamples = 4;
 constexpr float kSharp = 0.35F;     // rougher than this only floors mirror
 constexpr float kFaintest = 0.02F;  // mirror images weaker than this are not traced off the floor
 constexpr int kBlock = 4;           // pixels a side
 constexpr float kFaint = 0.06F;  // with one sample a pixel, floors that mirror less send fewer rays
-
-/// The samples of a tile: [pixel * samples + sample].
-struct TileSamples {
-  std::array<SurfaceHit, kTilePixels * kMaxSamples> hits;
-  std::array<Eigen::Vector3f, kTilePixels * kMaxSamples> directions;
-};
 
 /// What a pixel mirrors.
 struct MirrorSource {
@@ -40,17 +31,14 @@ class FrameTracer {
   FrameTracer(const FrameSetup& setup, const RayTable& table, const SE3& T_world_cam)
       : setup_(setup),
         table_(table),
-        R_(T_world_cam.rotation().matrix().cast<float>()),
-        eye_(T_world_cam.translation().cast<float>()),
-        floor_z_(setup.shader->floorHeight(eye_)),
+        rays_(setup, table, T_world_cam),
         samples_(table.grid() * table.grid()) {}
 
-  void traceTile(int tile, TileSamples& out) const;
+  void traceTile(int tile, TileSamples& out) const { rays_.trace(tile, out); }
   void shadeTile(int tile, const TileSamples& in, Radiance& out, ReflectionBuffer* mirror) const;
-  void labelTile(int tile, const TileSamples& in, Truth& out) const;
 
  private:
-  [[nodiscard]] RTCScene movingIn(int tile, bool mirrored) const;
+  [[nodiscard]] const Eigen::Vector3f& eye() const { return rays_.eye(); }
   /// The pixel without mirror images; main: the surface whose image shows best, weight: how well.
   Eigen::Vector3f shadePixel(const SurfaceHit* hits, const Eigen::Vector3f* directions,
                              float spread, MirrorSource& main) const;
@@ -60,64 +48,9 @@ class FrameTracer {
 
   const FrameSetup& setup_;
   const RayTable& table_;
-  const Eigen::Matrix3f R_;
-  const Eigen::Vector3f eye_;
-  const float floor_z_;  ///< below the eye
+  const TileTracer rays_;
   const int samples_;
 };
-
-/// What moves, if any of it may show in a tile, or in the floor's mirror image there.
-RTCScene FrameTracer::movingIn(int tile, bool mirrored) const {
-  if (setup_.moment->scene == nullptr) {
-    return nullptr;
-  }
-  constexpr float kLobe = 0.35F;  // rad: mirror rays spread around the ideal direction
-  const RayTable::Cone& cone = table_.cone(tile);
-  Eigen::Vector3f axis = R_ * cone.axis;
-  Eigen::Vector3f eye = eye_;
-  float angle = std::acos(std::clamp(cone.cosine, -1.0F, 1.0F)) + 0.01F;
-  if (mirrored) {  // the eye below the floor, looking up
-    axis.z() = -axis.z();
-    eye.z() = 2.0F * floor_z_ - eye.z();
-    angle += kLobe;
-  }
-  return setup_.moment->showsIn(eye, axis, angle) ? setup_.moment->scene.get() : nullptr;
-}
-
-void FrameTracer::traceTile(int tile, TileSamples& out) const {
-  const RTCScene moving = movingIn(tile, false);
-  const RayTable::Packet* packets = table_.packets(tile);
-  RayPacket rays;
-  for (int p = 0; p < table_.packetsPerTile(); ++p) {
-    const RayTable::Packet& packet = packets[p];
-    rays.clear(setup_.mask);
-    for (int k = 0; k < kPacket; ++k) {
-      rays.valid[k] = (packet.valid >> static_cast<unsigned>(k) & 1U) != 0U ? -1 : 0;
-      rays.rays.ray.org_x[k] = eye_.x();
-      rays.rays.ray.org_y[k] = eye_.y();
-      rays.rays.ray.org_z[k] = eye_.z();
-      rays.rays.ray.dir_x[k] =
-          R_(0, 0) * packet.x[k] + R_(0, 1) * packet.y[k] + R_(0, 2) * packet.z[k];
-      rays.rays.ray.dir_y[k] =
-          R_(1, 0) * packet.x[k] + R_(1, 1) * packet.y[k] + R_(1, 2) * packet.z[k];
-      rays.rays.ray.dir_z[k] =
-          R_(2, 0) * packet.x[k] + R_(2, 1) * packet.y[k] + R_(2, 2) * packet.z[k];
-      rays.rays.ray.tfar[k] = kFar;
-    }
-    if (packet.valid != 0U) {
-      traceBoth(*setup_.tracer, moving, rays, true);
-    }
-    for (int k = 0; k < kPacket; ++k) {
-      const auto i = static_cast<std::size_t>(table_.slot(p, k));
-      out.hits[i] = hitOf(*setup_.tracer, rays, k);
-      setup_.shader->prefetch(out.hits[i]);
-      if (rays.valid[k] == 0) {
-        out.hits[i].t = -1.0F;  // no ray at all: black
-      }
-      out.directions[i] << rays.rays.ray.dir_x[k], rays.rays.ray.dir_y[k], rays.rays.ray.dir_z[k];
-    }
-  }
-}
 
 Eigen::Vector3f FrameTracer::shadePixel(const SurfaceHit* hits, const Eigen::Vector3f* directions,
                                         float spread, MirrorSource& main) const {
@@ -131,7 +64,7 @@ Eigen::Vector3f FrameTracer::shadePixel(const SurfaceHit* hits, const Eigen::Vec
     }
     if (hits[i].triangle == kNoTriangle) {
       sum += setup_.open_above ? Eigen::Vector3f(Eigen::Vector3f::Zero())
-                               : shader.missed(eye_, directions[i]);
+                               : shader.missed(eye(), directions[i]);
       continue;
     }
     // Samples on the same surface are shaded as one.
@@ -158,7 +91,7 @@ Eigen::Vector3f FrameTracer::shadePixel(const SurfaceHit* hits, const Eigen::Vec
       ++count;
     }
     Surface surface;
-    shader.shade(group.data(), rays.data(), count, eye_, spread, samples_, moment, surface);
+    shader.shade(group.data(), rays.data(), count, eye(), spread, samples_, moment, surface);
     sum += static_cast<float>(count) * surface.radiance;
     const float cosine = -rays[0]->dot(surface.normal);
     const float weight = mirrorReflectance(surface.specular, surface.roughness, cosine) *
@@ -228,66 +161,15 @@ void FrameTracer::traceMirrors(int tile, const std::vector<MirrorRay>& floor,
                                const std::vector<MirrorRay>& other, Radiance& out,
                                ReflectionBuffer& mirror) const {
   if (!floor.empty()) {
-    traceFloorMirror(setup_, movingIn(tile, true), floor.data(), static_cast<int>(floor.size()),
-                     mirror);
+    traceFloorMirror(setup_, rays_.movingIn(tile, true), floor.data(),
+                     static_cast<int>(floor.size()), mirror);
   }
   if (!other.empty()) {
     traceMirror(setup_, other.data(), static_cast<int>(other.size()), out);
   }
 }
 
-void FrameTracer::labelTile(int tile, const TileSamples& in, Truth& out) const {
-  const int left = tile % table_.tilesX() * kTile;
-  const int top = tile / table_.tilesX() * kTile;
-  for (int y = 0; y < kTile && top + y < out.height; ++y) {
-    for (int x = 0; x < kTile && left + x < out.width; ++x) {
-      const std::size_t i = static_cast<std::size_t>(y * kTile + x);
-      const SurfaceHit& hit = in.hits[i];
-      if (hit.t < 0.0F || hit.triangle == kNoTriangle) {
-        continue;
-      }
-      const std::size_t pixel = static_cast<std::size_t>(top + y) * out.width + left + x;
-      out.labels[pixel] =
-          setup_.shader->labelOf(hit, eye_ + hit.t * in.directions[i], *setup_.moment);
-      out.instances[pixel] =
-          hit.object < 0 ? setup_.shader->triangleOf(hit, *setup_.moment).instance
-                         : setup_.moment->objects[static_cast<std::size_t>(hit.object)].instance;
-      out.depths[pixel] = hit.t;
-    }
-  }
-}
-
 }  // namespace
-
-void traceBoth(const StaticTracer& tracer, RTCScene moving, RayPacket& packet, bool coherent) {
-  tracer.intersect(packet, coherent);
-  if (moving != nullptr) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags =
-        coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    rtcIntersect16(packet.valid, moving, &context, &packet.rays);
-  }
-}
-
-SurfaceHit hitOf(const StaticTracer& tracer, const RayPacket& packet, int lane) {
-  SurfaceHit hit;
-  const auto& raw = packet.rays.hit;
-  if (raw.geomID[lane] == RTC_INVALID_GEOMETRY_ID || packet.valid[lane] == 0) {
-    return hit;
-  }
-  if (raw.instID[0][lane] != RTC_INVALID_GEOMETRY_ID) {
-    hit.object = static_cast<std::int32_t>(raw.instID[0][lane]);
-    hit.triangle = raw.primID[lane];
-  } else {
-    hit.triangle = tracer.triangleOf(packet, lane);
-  }
-  hit.u = raw.u[lane];
-  hit.v = raw.v[lane];
-  hit.t = packet.rays.ray.tfar[lane];
-  hit.geometric_normal = packet.geometricNormal(lane);
-  return hit;
-}
 
 void traceFrame(const FrameSetup& setup, const RayTable& table, const SE3& T_world_cam,
                 Radiance& out) {
@@ -312,27 +194,6 @@ void traceFrame(const FrameSetup& setup, const RayTable& table, const SE3& T_wor
   if (setup.reflections) {
     addFloorReflections(mirror, setup.threads, out);
   }
-}
-
-void traceTruth(const FrameSetup& setup, const RayTable& table, const SE3& T_world_cam,
-                Truth& out) {
-  PARKADE_CHECK(table.grid() == 1, "{} samples a side", table.grid());
-  out.width = table.width();
-  out.height = table.height();
-  const std::size_t size = static_cast<std::size_t>(out.width) * out.height;
-  out.labels.assign(size, SemanticClass::kUnknown);
-  out.instances.assign(size, 0U);
-  out.depths.assign(size, 0.0F);
-  const FrameTracer tracer(setup, table, T_world_cam);
-  parallelFor(setup.threads, static_cast<std::size_t>(table.tilesY()), [&](std::size_t row) {
-    const FlushDenormals flush;
-    thread_local TileSamples samples;
-    for (int i = 0; i < table.tilesX(); ++i) {
-      const int tile = static_cast<int>(row) * table.tilesX() + i;
-      tracer.traceTile(tile, samples);
-      tracer.labelTile(tile, samples, out);
-    }
-  });
 }
 
 }  // namespace parkade::sim

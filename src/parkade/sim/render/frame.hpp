@@ -47,10 +47,4 @@ void traceFrame(const FrameSetup& setup, const RayTable& table, const SE3& T_wor
 /// Labels, instances and depths; the table must have one sample per pixel.
 void traceTruth(const FrameSetup& setup, const RayTable& table, const SE3& T_world_cam, Truth& out);
 
-/// Traces a packet through the static scene and then through what moves (where not null).
-void traceBoth(const StaticTracer& tracer, RTCScene moving, RayPacket& packet, bool coherent);
-
-/// A lane's result after traceBoth.
-SurfaceHit hitOf(const StaticTracer& tracer, const RayPacket& packet, int lane);
-
 }  // namespace parkade::sim

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "parkade/sim/render/parallel.hpp"
+#include "parkade/sim/render/tile_tracer.hpp"
 
 namespace parkade::sim {
 namespace {

@@ -6,6 +6,7 @@
 #include "parkade/core/check.hpp"
 #include "parkade/sim/render/parallel.hpp"
 #include "parkade/sim/render/renderer.hpp"
+#include "parkade/sim/render/tile_tracer.hpp"
 
 namespace parkade::sim {
 

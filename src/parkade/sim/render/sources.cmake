@@ -23,9 +23,12 @@ set(RENDER_SOURCES
     render/sensor_kernel.cpp
     render/sensor_model.cpp
     render/shading.cpp
+    render/shading_tables.cpp
     render/sight_labels.cpp
     render/texture.cpp
-    render/tracer.cpp)
+    render/tile_tracer.cpp
+    render/tracer.cpp
+    render/truth.cpp)
 # Fused multiply-add would make pictures differ between instruction sets.
 set_source_files_properties(${RENDER_SOURCES} PROPERTIES
                             COMPILE_OPTIONS "-ffp-contract=off;-fno-math-errno;-fno-trapping-math")

@@ -86,6 +86,9 @@ Layout placeLayout(const LayoutGrid& grid, const GarageStyle& style);
 LayoutGrid paperGrid();
 LayoutGrid randomGrid(const GarageStyle& style, Random random);
 
+/// Free length that a pillar takes out of a bay, m: the pillar, and the slot lines on both sides.
+double pillarGap(const GarageStyle& style);
+
 /// The bare garage: outline, rooms, aisles, pillars, slots (unnumbered, free). Slots that would
 /// touch a pillar, a room, an aisle or another slot are left out.
 void buildFromLayout(const Layout& layout, const GarageStyle& style, Garage& garage);

@@ -10,6 +10,7 @@ set(WORLD_SOURCES
     world/aisle_graph.cpp
     world/aisle_paint.cpp
     world/arrows.cpp
+    world/car_hull.cpp
     world/car_mesh.cpp
     world/car_profile.cpp
     world/coverage.cpp
@@ -17,10 +18,12 @@ set(WORLD_SOURCES
     world/floor_build.cpp
     world/floor_maps.cpp
     world/floor_surface.cpp
-    world/garage_json.cpp
+    world/garage_json_read.cpp
+    world/garage_json_write.cpp
     world/generate.cpp
     world/grids.cpp
     world/layout.cpp
+    world/layout_build.cpp
     world/mesh_builder.cpp
     world/noise_texture.cpp
     world/one_way.cpp

@@ -1,37 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The Parkade authors
 // SPDX-License-Identifier: Apache-2.0
-#include "parkade/sim/world/garage_json.hpp"
-
+// Reads garage.json.
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
+
+#include "parkade/sim/world/garage_json.hpp"
+#include "parkade/sim/world/garage_json_names.hpp"
 
 namespace parkade::sim {
 namespace {
 
 using nlohmann::json;
 
-constexpr int kVersion = 1;
-constexpr std::array<const char*, 3> kSlotTypes = {"perpendicular", "parallel", "slanted"};
-constexpr std::array<const char*, 4> kSlotMarkings = {"closed", "t_shaped", "l_shaped", "open"};
-
 /// Thrown by the readers below and turned into an Error at the border.
 struct FormatError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
-
-json toJson(const Eigen::Vector2d& p) {
-  return json::array({p.x(), p.y()});
-}
-
-template <class Points>
-json pointsJson(const Points& points) {
-  json out = json::array();
-  for (const Eigen::Vector2d& p : points) out.push_back(toJson(p));
-  return out;
-}
 
 const json& at(const json& node, const char* key) {
   const auto it = node.find(key);
@@ -75,30 +61,10 @@ SemanticClass toClass(const json& node) {
       indexOf(kSemanticClassNames, get<std::string>(node, "class"), "class"));
 }
 
-std::string nameOf(SemanticClass semantic_class) {
-  return std::string(kSemanticClassNames[static_cast<std::size_t>(semantic_class)]);
-}
-
-json poseJson(const SE3& pose) {
-  const Eigen::Vector3d& t = pose.translation();
-  const Eigen::Quaterniond& q = pose.rotation().quaternion();
-  return {{"position", {t.x(), t.y(), t.z()}}, {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
-}
-
 SE3 toPose(const json& node) {
   const auto t = get<std::array<double, 3>>(node, "position");
   const auto q = get<std::array<double, 4>>(node, "quaternion_xyzw");
   return {SO3(Eigen::Quaterniond(q[3], q[0], q[1], q[2])), {t[0], t[1], t[2]}};
-}
-
-json slotJson(const Slot& slot) {
-  return {{"id", slot.id},
-          {"corners", pointsJson(slot.corners)},
-          {"type", kSlotTypes[static_cast<std::size_t>(slot.type)]},
-          {"marking", kSlotMarkings[static_cast<std::size_t>(slot.marking)]},
-          {"number", slot.number},
-          {"zone", slot.zone},
-          {"occupied", slot.occupied}};
 }
 
 Slot toSlot(const json& node) {
@@ -107,25 +73,14 @@ Slot toSlot(const json& node) {
   const std::vector<Eigen::Vector2d> corners = toPoints(at(node, "corners"));
   if (corners.size() != 4) throw FormatError("key 'corners' has not four points");
   std::copy(corners.begin(), corners.end(), slot.corners.begin());
-  slot.type = static_cast<SlotType>(indexOf(kSlotTypes, get<std::string>(node, "type"), "type"));
+  slot.type =
+      static_cast<SlotType>(indexOf(kSlotTypeNames, get<std::string>(node, "type"), "type"));
   slot.marking = static_cast<SlotMarking>(
-      indexOf(kSlotMarkings, get<std::string>(node, "marking"), "marking"));
+      indexOf(kSlotMarkingNames, get<std::string>(node, "marking"), "marking"));
   slot.number = get<std::string>(node, "number");
   slot.zone = get<std::string>(node, "zone");
   slot.occupied = get<bool>(node, "occupied");
   return slot;
-}
-
-json markingJson(const Marking& marking) {
-  json polygons = json::array();
-  for (const auto& polygon : marking.polygons) polygons.push_back(pointsJson(polygon));
-  return {{"id", marking.id},
-          {"class", nameOf(marking.semantic_class)},
-          {"polygons", polygons},
-          {"meaning", marking.meaning},
-          {"position", toJson(marking.position)},
-          {"heading", marking.heading},
-          {"colour", {marking.colour.x(), marking.colour.y(), marking.colour.z()}}};
 }
 
 Marking toMarking(const json& node) {
@@ -141,15 +96,6 @@ Marking toMarking(const json& node) {
   return marking;
 }
 
-json pillarJson(const Pillar& pillar) {
-  return {{"id", pillar.id},
-          {"center", toJson(pillar.center)},
-          {"size", toJson(pillar.size)},
-          {"height", pillar.height},
-          {"round", pillar.round},
-          {"zone_text", pillar.zone_text}};
-}
-
 Pillar toPillar(const json& node) {
   Pillar pillar;
   pillar.id = get<int>(node, "id");
@@ -161,15 +107,6 @@ Pillar toPillar(const json& node) {
   return pillar;
 }
 
-json signJson(const Sign& sign) {
-  return {{"id", sign.id},
-          {"class", nameOf(sign.semantic_class)},
-          {"T_world_sign", poseJson(sign.T_world_sign)},
-          {"width", sign.width},
-          {"height", sign.height},
-          {"text", sign.text}};
-}
-
 Sign toSign(const json& node) {
   Sign sign;
   sign.id = get<int>(node, "id");
@@ -179,18 +116,6 @@ Sign toSign(const json& node) {
   sign.height = get<double>(node, "height");
   sign.text = get<std::string>(node, "text");
   return sign;
-}
-
-json aislesJson(const AisleGraph& graph) {
-  json edges = json::array();
-  for (const AisleGraph::Edge& edge : graph.edges) {
-    edges.push_back({{"from", edge.from},
-                     {"to", edge.to},
-                     {"width", edge.width},
-                     {"one_way", edge.one_way},
-                     {"speed_limit", edge.speed_limit}});
-  }
-  return {{"nodes", pointsJson(graph.nodes)}, {"edges", edges}};
 }
 
 AisleGraph toAisles(const json& node) {
@@ -212,25 +137,6 @@ AisleGraph toAisles(const json& node) {
   return graph;
 }
 
-json groundJson(const Garage& garage) {
-  json ramps = json::array();
-  for (const Garage::Ramp& ramp : garage.ramps) {
-    ramps.push_back({{"start", toJson(ramp.start)},
-                     {"direction", toJson(ramp.direction)},
-                     {"length", ramp.length},
-                     {"rise", ramp.rise}});
-  }
-  json bumps = json::array();
-  for (const Garage::Bump& bump : garage.bumps) {
-    bumps.push_back({{"center", toJson(bump.center)},
-                     {"heading", bump.heading},
-                     {"length", bump.length},
-                     {"width", bump.width},
-                     {"height", bump.height}});
-  }
-  return {{"ramps", ramps}, {"bumps", bumps}};
-}
-
 void readGround(const json& node, Garage& garage) {
   for (const json& item : at(node, "ramps")) {
     garage.ramps.push_back({toPoint(at(item, "start")), toPoint(at(item, "direction")),
@@ -241,13 +147,6 @@ void readGround(const json& node, Garage& garage) {
                             get<double>(item, "length"), get<double>(item, "width"),
                             get<double>(item, "height")});
   }
-}
-
-template <class Items, class ToJson>
-json listJson(const Items& items, ToJson to_json) {
-  json out = json::array();
-  for (const auto& item : items) out.push_back(to_json(item));
-  return out;
 }
 
 /// Reads a list; a failure names the list and the place in it.
@@ -265,9 +164,9 @@ void readList(const json& root, const char* key, std::vector<Item>& out, Read re
 }
 
 Garage toGarage(const json& root) {
-  if (const int version = get<int>(root, "version"); version != kVersion) {
+  if (const int version = get<int>(root, "version"); version != kGarageVersion) {
     throw FormatError(
-        fmt::format("version {} is not {}, the one this program reads", version, kVersion));
+        fmt::format("version {} is not {}, the one this program reads", version, kGarageVersion));
   }
   Garage garage;
   garage.name = get<std::string>(root, "name");
@@ -294,52 +193,6 @@ Garage toGarage(const json& root) {
 }
 
 }  // namespace
-
-std::string garageTruthText(const Garage& garage) {
-  nlohmann::ordered_json root;
-  root["format"] = "parkade garage";
-  root["version"] = kVersion;
-  root["name"] = garage.name;
-  root["seed"] = garage.seed;
-  root["min"] = toJson(garage.min);
-  root["max"] = toJson(garage.max);
-  root["outline"] = pointsJson(garage.outline);
-  root["ceiling_height"] = garage.ceiling_height;
-  root["line_width"] = garage.line_width;
-  root["slots"] = listJson(garage.slots, slotJson);
-  root["markings"] = listJson(garage.markings, markingJson);
-  root["pillars"] = listJson(garage.pillars, pillarJson);
-  root["signs"] = listJson(garage.signs, signJson);
-  root["rooms"] = listJson(garage.rooms, [](const Room& room) {
-    return json{{"id", room.id}, {"min", toJson(room.min)}, {"max", toJson(room.max)}};
-  });
-  root["entrances"] = listJson(garage.entrances, [](const Entrance& entrance) {
-    return json{{"center", toJson(entrance.center)},
-                {"heading", entrance.heading},
-                {"width", entrance.width}};
-  });
-  root["aisles"] = aislesJson(garage.aisles);
-  root["ground"] = groundJson(garage);
-  return root.dump(1) + "\n";
-}
-
-Status writeGarageTruth(const Garage& garage, const std::string& path) {
-  const std::string part = path + ".part";
-  {
-    std::ofstream stream(part, std::ios::binary);
-    stream << garageTruthText(garage);
-    stream.flush();
-    if (!stream) {
-      std::remove(part.c_str());
-      return Error{part + ": cannot be written; check that the folder exists and has space"};
-    }
-  }
-  if (std::rename(part.c_str(), path.c_str()) != 0) {
-    std::remove(part.c_str());
-    return Error{path + ": cannot be replaced"};
-  }
-  return {};
-}
 
 Result<Garage> readGarageTruth(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "parkade/geometry/se3.hpp"
+#include "parkade/sim/render/frame.hpp"
+
+namespace parkade::sim {
+
+inline constexpr int kTilePixels = RayTable::kTile * RayTable::kTile;
+/// Samples of a pixel at most.
+inline constexpr int kMaxSamples = 4;
+
+/// The samples of a tile: [pixel * samples + sample].
+struct TileSamples {
+  std::array<SurfaceHit, kTilePixels * kMaxSamples> hits;
+  std::array<Eigen::Vector3f, kTilePixels * kMaxSamples> directions;
+};
+
+/// Sends the rays of a camera at its place, tile by tile.
+class TileTracer {
+ public:
+  TileTracer(const FrameSetup& setup, const RayTable& table, const SE3& T_world_cam)
+      : setup_(setup),
+        table_(table),
+        R_(T_world_cam.rotation().matrix().cast<float>()),
+        eye_(T_world_cam.translation().cast<float>()),
+        floor_z_(setup.shader->floorHeight(eye_)) {}
+
+  void trace(int tile, TileSamples& out) const;
+  /// What moves, if any of it may show in a tile, or in the floor's mirror image there.
+  [[nodiscard]] RTCScene movingIn(int tile, bool mirrored) const;
+  [[nodiscard]] const Eigen::Vector3f& eye() const { return eye_; }
+
+ private:
+  const FrameSetup& setup_;
+  const RayTable& table_;
+  const Eigen::Matrix3f R_;
+  const Eigen::Vector3f eye_;
+  const float floor_z_;  ///< below the eye
+};
+
+/// Traces a packet through the static scene and then through what moves (where not null).
+void traceBoth(const StaticTracer& tracer, RTCScene moving, RayPacket& packet, bool coherent);
+
+/// A lane's result after traceBoth.
+SurfaceHit hitOf(const StaticTracer& tracer, const RayPacket& packet, int lane);
+
+}  // namespace parkade::sim
