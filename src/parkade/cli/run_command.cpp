@@ -35,6 +35,7 @@ struct RunArguments {
   bool with_final = false;
   bool force = false;
   int threads = 2;
+  bool real_time = false;
 };
 
 constexpr const char* kFooter =
@@ -72,6 +73,7 @@ RunMethod methodOf(const std::string& name) {
 Status runSequence(const RunArguments& arguments) {
   PipelineOptions options;
   if (Status status = configure(arguments, options); !status) return status;
+  if (arguments.real_time) options.pace = 1.0;
   const RunMethod method = methodOf(arguments.method);
   SourceRequest request = arguments.source;
   // The paper's semantic method has one camera: the front one, where the user names no other.
@@ -191,6 +193,12 @@ void addRunCommand(CLI::App& app, int& exit_code) {
           "List all options with their defaults and exit")
       ->group("Options");
 
+  command
+      ->add_flag(
+          "--real-time", a->real_time,
+          "Take frame sets when they are due by their stamps, as from a car: latencies are then "
+          "those of a live run")
+      ->group("Work");
   command
       ->add_option("--threads", a->threads, "Threads to work on; the results do not depend on it")
       ->check(CLI::Range(1, 64))

@@ -9,6 +9,7 @@
 #include <future>
 #include <opencv2/core/utility.hpp>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "parkade/core/check.hpp"
@@ -65,6 +66,7 @@ class MappingRun::Impl {
         estimator_(rig, options.vio),
         T_vehicle_imu_(rig.imu.T_vehicle_imu),
         semantics_delay_(options.semantics_delay),
+        pace_(options.pace),
         look_pool_(threads > 1 ? 1 : 0),
         pool_(threads - 1) {
     tracker.setParallel([this](int count, const std::function<void(int)>& body) {
@@ -115,6 +117,7 @@ class MappingRun::Impl {
   void enterLooks(int before);
   MotionPrior predict(const Packet& packet);
   void summarise(Clock::time_point begin);
+  Clock::time_point awaitDue(TimeNs t_ns);
 
   VioEstimator estimator_;
   SE3 T_vehicle_imu_;
@@ -132,6 +135,12 @@ class MappingRun::Impl {
   Status fusion_status_;
   BusyTime busy_;
   int semantics_delay_ = 0;
+  double pace_ = 0.0;
+  struct PaceStart {
+    Clock::time_point at;
+    TimeNs t_ns = 0;
+  };
+  std::optional<PaceStart> pace_start_;  // of the first frame set
   std::deque<std::unique_ptr<Look>> looks_;
   ThreadPool look_pool_;
   ThreadPool pool_;  // last: the pools' threads use what is above
@@ -275,6 +284,19 @@ void MappingRun::Impl::finishEstimation() {
   running_.reset();
 }
 
+// When a frame set of this stamp arrives at the pace set: now, or when it is due, which may be past
+// where the run lags behind.
+Clock::time_point MappingRun::Impl::awaitDue(TimeNs t_ns) {
+  const Clock::time_point now = Clock::now();
+  if (!(pace_ > 0.0)) return now;
+  if (!pace_start_) pace_start_ = PaceStart{now, t_ns};
+  const auto due = pace_start_->at +
+                   std::chrono::duration_cast<Clock::duration>(
+                       std::chrono::duration<double>(toSeconds(t_ns - pace_start_->t_ns) / pace_));
+  std::this_thread::sleep_until(due);
+  return due;
+}
+
 Status MappingRun::Impl::run(SensorSource& source, const ProgressCallback& progress) {
   const Clock::time_point begin = Clock::now();
   const SensorSourceInfo& info = source.info();
@@ -320,7 +342,7 @@ Status MappingRun::Impl::run(SensorSource& source, const ProgressCallback& progr
       dispatch();  // the IMU is silent: the frame set before goes on without the reading after it
       waiting = std::exchange(gathering, Packet{});
       waiting->frames = std::get<FrameSet>(std::move(**event));
-      waiting->arrived = Clock::now();
+      waiting->arrived = awaitDue(waiting->frames.t_ns);
     }
   }
   dispatch();

@@ -31,6 +31,7 @@ struct PipelineOptions {
   DeadReckoningOptions reckoning;
   AvpSlamOptions avp_slam;
   int semantics_delay = 2;
+  double pace = 0.0;
 
   void visit(OptionVisitor& v) {
     v.group("tracking", tracking);
@@ -43,6 +44,10 @@ struct PipelineOptions {
             "Features of a frame set correct the pose this many frame sets later: poses never wait "
             "for networks, and never depend on how fast these are.",
             0, 50);
+    v.field("pace", pace, "ratio",
+            "Frame sets are taken no faster than so many times the pace of their stamps, as a "
+            "car's cameras give them at 1; 0: as fast as they can be read. Changes no result.",
+            0.0, 1000.0);
   }
 };
 

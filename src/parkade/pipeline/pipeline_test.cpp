@@ -198,6 +198,26 @@ TEST(MappingRun, SamePosesOnAnyNumberOfThreads) {
   }
 }
 
+TEST(MappingRun, APaceChangesTheTimeOnly) {
+  Trajectory reference;
+  for (const double pace : {0.0, 5.0}) {
+    DotSource source;
+    PipelineOptions options;
+    options.pace = pace;
+    auto run = MappingRun::create(source.rig, options, 2);
+    ASSERT_TRUE(run.ok());
+    ASSERT_TRUE((*run)->run(source).ok());
+    // 24 gaps of 0.1 s between the frame sets.
+    EXPECT_GE((*run)->summary().wall_s, pace > 0.0 ? 2.4 / pace : 0.0);
+    const Trajectory& poses = (*run)->trajectory();
+    if (reference.empty()) reference = poses;
+    ASSERT_EQ(poses.size(), reference.size());
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      EXPECT_EQ(poses[i].T_world_body.matrix(), reference[i].T_world_body.matrix()) << "pose " << i;
+    }
+  }
+}
+
 class Onlooker : public PipelineObserver {
  public:
   void onFeatures(const FeaturesEvent& event) override {
