@@ -143,6 +143,11 @@ const BevImage& SemanticFrontEnd::picture() const {
   return impl_->bev;
 }
 
+const std::vector<LevelView>& SemanticFrontEnd::views() const {
+  static const std::vector<LevelView> none;
+  return impl_->zone_markers == nullptr ? none : impl_->zone_markers->views();
+}
+
 std::vector<StageTiming> SemanticFrontEnd::timings() const {
   return {impl_->stitch_clock.timing(), impl_->segment_clock.timing(),
           impl_->feature_clock.timing(), impl_->zone_clock.timing()};

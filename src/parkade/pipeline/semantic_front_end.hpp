@@ -74,6 +74,9 @@ class SemanticFrontEnd {
 
   /// The stitched picture that the last look() saw.
   [[nodiscard]] const BevImage& picture() const;
+  /// The labels of the cameras whose own pictures the last look() saw labelled; often a part of
+  /// them.
+  [[nodiscard]] const std::vector<LevelView>& views() const;
 
   [[nodiscard]] std::vector<StageTiming> timings() const;
 

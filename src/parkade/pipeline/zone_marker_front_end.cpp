@@ -7,6 +7,7 @@
 
 #include "parkade/core/log.hpp"
 #include "parkade/geometry/se2.hpp"
+#include "parkade/semantics/level_views.hpp"
 #include "parkade/semantics/segmentation.hpp"
 #include "parkade/semantics/zone_text_reader.hpp"
 #include "parkade/tracking/overlap.hpp"
@@ -21,15 +22,18 @@ struct ZoneMarkerFrontEnd::Impl {
   ZoneTextReader reader;
   ZoneMarkerTracker tracker;
   std::size_t next_camera = 0;
+  std::vector<LevelView> views = {};  // of the last look
 
   // What one camera sees, in the odometry's frame turned so that z points up.
   Result<std::vector<ZoneMarkerView>> viewsOf(std::size_t camera, const cv::Mat& image,
-                                              const SE3& T_up_vehicle) {
+                                              const SE3& T_up_vehicle, const SE3& T_level_vehicle) {
     const RigCamera& eye = rig.cameras[camera];
     Result<ViewLabels> labels = network.segmentView(image);
     if (!labels) return labels.error();
+    views.push_back(
+        levelView(labels->labels, masks[camera], eye.camera, T_level_vehicle * eye.T_vehicle_cam));
     const SE3 T_up_cam = T_up_vehicle * eye.T_vehicle_cam;
-    std::vector<ZoneMarkerView> views;
+    std::vector<ZoneMarkerView> markers;
     for (const ZoneMarkerSight& sight :
          findZoneMarkers(labels->labels, image, masks[camera], eye.camera, T_up_cam.rotation(),
                          options.faces)) {
@@ -41,9 +45,9 @@ struct ZoneMarkerFrontEnd::Impl {
         if (!readings) return readings.error();
         view.readings.push_back(std::move(readings).value());
       }
-      views.push_back(std::move(view));
+      markers.push_back(std::move(view));
     }
-    return views;
+    return markers;
   }
 };
 
@@ -81,6 +85,10 @@ Result<std::vector<ObjectObservation>> ZoneMarkerFrontEnd::look(const FrameSet& 
   const SE3 T_up_odom(SO3::fromTwoVectors(odometry.up_odom, Eigen::Vector3d::UnitZ()),
                       Eigen::Vector3d::Zero());
   const SE3 T_up_vehicle = T_up_odom * odometry.T_odom_vehicle;
+  const SE3 T_level_vehicle(
+      SO3::exp({0.0, attitude.pitch, 0.0}) * SO3::exp({attitude.roll, 0.0, 0.0}),
+      {0.0, 0.0, attitude.height});
+  m.views.clear();
   const std::size_t cameras = m.rig.cameras.size();
   int looked = 0;
   for (std::size_t k = 0; k < cameras && looked < m.options.views; ++k) {
@@ -89,7 +97,7 @@ Result<std::vector<ObjectObservation>> ZoneMarkerFrontEnd::look(const FrameSet& 
     if (camera >= frames.images.size() || frames.images[camera].empty()) continue;
     ++looked;
     Result<std::vector<ZoneMarkerView>> views =
-        m.viewsOf(camera, frames.images[camera], T_up_vehicle);
+        m.viewsOf(camera, frames.images[camera], T_up_vehicle, T_level_vehicle);
     if (!views) return views.error();
     m.tracker.add(*views, frames.t_ns);
   }
@@ -110,6 +118,10 @@ Result<std::vector<ObjectObservation>> ZoneMarkerFrontEnd::look(const FrameSet& 
     observations.push_back(std::move(o));
   }
   return observations;
+}
+
+const std::vector<LevelView>& ZoneMarkerFrontEnd::views() const {
+  return impl_->views;
 }
 
 }  // namespace parkade

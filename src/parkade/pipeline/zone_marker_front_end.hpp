@@ -11,6 +11,7 @@
 #include "parkade/core/result.hpp"
 #include "parkade/semantics/zone_marker_faces.hpp"
 #include "parkade/semantics/zone_marker_tracker.hpp"
+#include "parkade/types/level_view.hpp"
 #include "parkade/types/pose_estimate.hpp"
 #include "parkade/types/samples.hpp"
 #include "parkade/types/semantic_features.hpp"
@@ -52,6 +53,9 @@ class ZoneMarkerFrontEnd {
   /// frame; each rests on views of its own. odometry: of this frame set. In order of time.
   Result<std::vector<ObjectObservation>> look(const FrameSet& frames, const PoseEstimate& odometry,
                                               const GroundAttitude& attitude);
+
+  /// The labels of the cameras that the last look() looked at.
+  [[nodiscard]] const std::vector<LevelView>& views() const;
 
  private:
   struct Impl;

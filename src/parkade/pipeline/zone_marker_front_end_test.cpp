@@ -105,6 +105,15 @@ TEST_F(ZoneMarkerDrive, PlacesAndReadsAMarkerThatIsPassed) {
     frames.t_ns = odometry.t_ns;
     const auto found = (*front_end)->look(frames, odometry, {0.0, 0.0, 0.0});
     ASSERT_TRUE(found) << found.error().message;
+    // The labels that it saw are there for others, in the levelled vehicle frame.
+    ASSERT_EQ((*front_end)->views().size(), 1U);
+    const LevelView& view = (*front_end)->views()[0];
+    const Eigen::Vector3d plate = odometry.T_odom_vehicle.inverse() * marker_;
+    if (std::abs(plate.x() - 1.5) < 3.0) {
+      EXPECT_EQ(view.at(plate), static_cast<int>(SemanticClass::kZoneMarker)) << k;
+      EXPECT_NE(view.at(plate + Eigen::Vector3d(0.8, 0.0, 0.0)),
+                static_cast<int>(SemanticClass::kZoneMarker));
+    }
     for (const ObjectObservation& o : *found) {
       EXPECT_EQ(o.semantic_class, SemanticClass::kZoneMarker);
       EXPECT_EQ(o.text, "E2");
