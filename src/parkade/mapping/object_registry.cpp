@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "parkade/mapping/column_sight.hpp"
 #include "parkade/mapping/frame_evidence.hpp"
 #include "parkade/mapping/map_check.hpp"
 
@@ -42,7 +43,7 @@ void ObjectRegistry::fuse(Track& track, const Eigen::Vector3d& p,
 
 void ObjectRegistry::update(const std::vector<ObjectObservation>& observations,
                             const SE2& T_world_vehicle, double z_vehicle, std::int64_t anchor,
-                            const BevLabels* labels) {
+                            const BevLabels* labels, const std::vector<LevelView>& views) {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   R.topLeftCorner<2, 2>() = T_world_vehicle.rotationMatrix();
   const double floor2 = options_.position_floor_m * options_.position_floor_m;
@@ -93,6 +94,7 @@ void ObjectRegistry::update(const std::vector<ObjectObservation>& observations,
     ++track.observations;
   }
   if (labels != nullptr) look(*labels, T_world_vehicle, used);
+  for (const LevelView& view : views) lookAcross(view, T_world_vehicle);
 }
 
 void ObjectRegistry::look(const BevLabels& labels, const SE2& T_world_vehicle,
@@ -123,6 +125,30 @@ void ObjectRegistry::look(const BevLabels& labels, const SE2& T_world_vehicle,
   }
 }
 
+void ObjectRegistry::lookAcross(const LevelView& view, const SE2& T_world_vehicle) {
+  viewed_ = true;
+  const SE2 T_vehicle_world = T_world_vehicle.inverse();
+  std::vector<Track*> pillars;
+  std::vector<Eigen::Vector2d> feet;
+  for (Track& track : tracks_) {
+    if (track.semantic_class != SemanticClass::kPillar) continue;
+    pillars.push_back(&track);
+    feet.emplace_back(T_vehicle_world * track.position.head<2>());
+  }
+  for (std::size_t i = 0; i < pillars.size(); ++i) {
+    const ColumnSight sight = columnSight(view, feet[i]);
+    if (sight == ColumnSight::kNotThere) ++pillars[i]->in_views.misses;
+    if (sight != ColumnSight::kThere) continue;
+    // What a better known pillar shows says nothing of one behind it.
+    bool explained = false;
+    for (std::size_t j = 0; j < pillars.size() && !explained; ++j) {
+      explained = pillars[j]->observations > pillars[i]->observations &&
+                  standsBefore(feet[j], feet[i], view.eye.head<2>());
+    }
+    if (!explained) ++pillars[i]->in_views.hits;
+  }
+}
+
 void ObjectRegistry::mergeDuplicates() {
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     for (std::size_t j = tracks_.size() - 1; j > i; --j) {
@@ -139,6 +165,7 @@ void ObjectRegistry::mergeDuplicates() {
       a.texts.add(b.texts);
       a.observations += b.observations;
       a.existence.add(b.existence);
+      a.in_views.add(b.in_views);
       a.votes.own += b.votes.own;
       a.votes.rival += b.votes.rival;
       a.votes.floor += b.votes.floor;
@@ -165,8 +192,12 @@ void ObjectRegistry::moveWithAnchors(const std::function<SE2(std::int64_t)>& cor
 }
 
 double ObjectRegistry::existence(const Track& track) const {
-  return track.existence.logOdds(isUpright(track.semantic_class) ? options_.upright
-                                                                 : options_.paint);
+  const double l =
+      track.existence.logOdds(isUpright(track.semantic_class) ? options_.upright : options_.paint);
+  if (track.semantic_class != SemanticClass::kPillar) return l;
+  constexpr double kEven = 0.5;  // the prior is in l
+  return l + track.in_views.logOdds(
+                 {options_.pillar_views.detection, options_.pillar_views.false_alarm, kEven});
 }
 
 bool ObjectRegistry::exists(const Track& track) const {
@@ -174,6 +205,10 @@ bool ObjectRegistry::exists(const Track& track) const {
                         ? options_.min_marker_observations
                         : options_.min_observations;
   if (track.observations < least) return false;
+  if (viewed_ && track.semantic_class == SemanticClass::kPillar &&
+      track.in_views.hits < options_.pillar_views.min_hits) {
+    return false;
+  }
   if (!sighted_ || track.outline.empty()) return true;
   const double looks_alike = track.votes.own + track.votes.rival;
   return existence(track) > 0.0 && track.votes.own >= options_.min_own_share * looks_alike;

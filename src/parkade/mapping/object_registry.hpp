@@ -13,8 +13,26 @@
 #include "parkade/mapping/label_sight.hpp"
 #include "parkade/mapping/parking_map.hpp"
 #include "parkade/mapping/votes.hpp"
+#include "parkade/types/level_view.hpp"
 
 namespace parkade {
+
+/// What cameras' own pictures say of pillars.
+struct PillarViewOptions {
+  double detection = 0.8;
+  double false_alarm = 0.3;
+  int min_hits = 2;
+
+  void visit(OptionVisitor& v) {
+    v.field("detection", detection, "probability",
+            "That a picture that looks at a pillar shows one there.", 0.01, 0.99);
+    v.field("false_alarm", false_alarm, "probability",
+            "That it shows one where none is: errors repeat, and places lie off.", 0.01, 0.99);
+    v.field("min_hits", min_hits, "count",
+            "Pillars that fewer pictures showed are not told, where there are such pictures.", 0,
+            1000);
+  }
+};
 
 struct ObjectRegistryOptions {
   double association_sigma_m = 0.15;
@@ -26,6 +44,7 @@ struct ObjectRegistryOptions {
   double duplicate_overlap = 0.3;
   ExistenceOptions paint{0.4, 0.1, 0.1};
   ExistenceOptions upright{0.6, 0.25, 0.1};  // smears beside pillars look alike again and again
+  PillarViewOptions pillar_views;
 
   void visit(OptionVisitor& v) {
     v.field("association_sigma_m", association_sigma_m, "m",
@@ -47,6 +66,7 @@ struct ObjectRegistryOptions {
             "Of two of a class that share more of the smaller one's area, one is told.", 0.05, 1.0);
     v.group("paint", paint);
     v.group("upright", upright);
+    v.group("pillar_views", pillar_views);
   }
 };
 
@@ -57,9 +77,11 @@ class ObjectRegistry {
   explicit ObjectRegistry(const ObjectRegistryOptions& options) : options_(options) {}
 
   /// labels: of the picture that the observations come from. Where given, objects in plain sight
-  /// there that were not observed lose evidence, and their places' labels vote on them.
+  /// there that were not observed lose evidence, and their places' labels vote on them. views: of
+  /// the same instant; each confirms or refutes the pillars that it looks at.
   void update(const std::vector<ObjectObservation>& observations, const SE2& T_world_vehicle,
-              double z_vehicle, std::int64_t anchor, const BevLabels* labels = nullptr);
+              double z_vehicle, std::int64_t anchor, const BevLabels* labels = nullptr,
+              const std::vector<LevelView>& views = {});
   /// As SlotRegistry's.
   void moveWithAnchors(const std::function<SE2(std::int64_t)>& correction);
   /// Those that exist by what plain sight shows, none on another of its class; ordered by id.
@@ -79,9 +101,11 @@ class ObjectRegistry {
     double outline_confidence = 0.0;
     std::int64_t observations = 0;
     Existence existence;
-    AreaShares votes;  ///< sum of what the labels showed of its place in plain sight
+    Existence in_views;  ///< of a pillar, by cameras' own pictures
+    AreaShares votes;    ///< sum of what the labels showed of its place in plain sight
   };
   void look(const BevLabels& labels, const SE2& T_world_vehicle, const std::vector<bool>& observed);
+  void lookAcross(const LevelView& view, const SE2& T_world_vehicle);
   /// Log-odds.
   [[nodiscard]] double existence(const Track& track) const;
   [[nodiscard]] bool exists(const Track& track) const;
@@ -94,6 +118,7 @@ class ObjectRegistry {
   std::vector<Track> tracks_;
   std::int64_t next_id_ = 1;
   bool sighted_ = false;  ///< labels were given
+  bool viewed_ = false;   ///< views were given
 };
 
 }  // namespace parkade

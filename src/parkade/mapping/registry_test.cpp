@@ -5,6 +5,7 @@
 #include <set>
 
 #include "parkade/mapping/label_sight.hpp"
+#include "parkade/mapping/level_view_test_support.hpp"
 #include "parkade/mapping/map_check.hpp"
 #include "parkade/mapping/object_registry.hpp"
 #include "parkade/mapping/slot_registry.hpp"
@@ -299,6 +300,86 @@ TEST(ObjectRegistry, OfTwoOnOnePlaceTheBetterSeenIsTold) {
   const std::vector<MapObject> objects = registry.objects();
   ASSERT_EQ(objects.size(), 1U);
   EXPECT_NEAR(objects[0].position.x(), 4.0, 0.05);
+}
+
+// A pillar of 0.6 m on the floor, and how a bird's-eye picture shows it.
+ObjectObservation pillarAt(const Eigen::Vector2d& p) {
+  ObjectObservation o;
+  o.semantic_class = SemanticClass::kPillar;
+  o.position << p, 0.0;
+  o.covariance = 4e-4 * Eigen::Matrix3d::Identity();
+  o.confidence = 0.9;
+  for (const auto& corner : {Eigen::Vector2d(-0.3, -0.3), Eigen::Vector2d(0.3, -0.3),
+                             Eigen::Vector2d(0.3, 0.3), Eigen::Vector2d(-0.3, 0.3)}) {
+    o.outline.emplace_back(p + corner);
+  }
+  return o;
+}
+
+BevLabels pillarLabels(const std::vector<Eigen::Vector2d>& places) {
+  BevLabels labels;
+  labels.labels = cv::Mat(labels.geometry.height_px, labels.geometry.width_px, CV_8UC1,
+                          cv::Scalar(static_cast<int>(SemanticClass::kFloor)));
+  for (int v = 0; v < labels.labels.rows; ++v) {
+    for (int u = 0; u < labels.labels.cols; ++u) {
+      for (const Eigen::Vector2d& place : places) {
+        const Eigen::Vector2d d = labels.geometry.toGround({u, v}) - place;
+        if (d.cwiseAbs().maxCoeff() > 0.3) continue;
+        labels.labels.at<std::uint8_t>(v, u) = static_cast<std::uint8_t>(SemanticClass::kPillar);
+      }
+    }
+  }
+  return labels;
+}
+
+TEST(ObjectRegistry, PillarsAreConfirmedOrRefutedByCamerasOwnPictures) {
+  const Eigen::Vector2d place(4.0, 1.5);
+  const BevLabels labels = pillarLabels({place});
+  const auto told = [&](const std::vector<LevelView>& views) {
+    ObjectRegistry registry({});
+    for (int k = 0; k < 6; ++k) {
+      registry.update({pillarAt(place)}, SE2(), 0.0, 0, &labels, views);
+    }
+    return registry.objects().size();
+  };
+  EXPECT_EQ(told({}), 1U);  // no such pictures: the bird's-eye view alone
+  const LevelView plain = testing::emptyLevelView();
+  EXPECT_EQ(told({plain}), 0U);
+  LevelView shown = testing::emptyLevelView();
+  testing::drawColumn(shown, place, 0.3, SemanticClass::kPillar);
+  EXPECT_EQ(told({shown}), 1U);
+  // One that looks elsewhere says nothing, but there has to be one that shows it.
+  LevelView elsewhere = plain;
+  elsewhere.labels = cv::Mat(plain.labels.size(), CV_8UC1, cv::Scalar(LevelView::kNotSeen));
+  EXPECT_EQ(told({elsewhere}), 0U);
+  EXPECT_EQ(told({shown, elsewhere}), 1U);
+  EXPECT_EQ(told({shown, plain, plain}), 0U);
+}
+
+TEST(ObjectRegistry, APillarDoesNotSpeakForWhatLiesBehindIt) {
+  const Eigen::Vector2d place(3.5, 0.0);
+  const Eigen::Vector2d smear(6.3, 0.2);
+  const BevLabels labels = pillarLabels({place, smear});
+  LevelView view = testing::emptyLevelView();
+  testing::drawColumn(view, place, 0.3, SemanticClass::kPillar);
+  const auto told = [&](const std::vector<LevelView>& views) {
+    ObjectRegistry registry({});
+    for (int k = 0; k < 12; ++k) {
+      std::vector<ObjectObservation> seen = {pillarAt(place)};
+      if (k % 2 == 1) seen.push_back(pillarAt(smear));
+      registry.update(seen, SE2(), 0.0, 0, &labels, views);
+    }
+    return registry.objects();
+  };
+  EXPECT_EQ(told({}).size(), 2U);
+  const std::vector<MapObject> objects = told({view});
+  ASSERT_EQ(objects.size(), 1U);
+  EXPECT_NEAR(objects[0].position.x(), 3.5, 0.05);
+  // A second pillar that another eye sees by itself is told.
+  LevelView beside = testing::emptyLevelView({2.0, 5.0, 0.9});
+  testing::drawColumn(beside, smear, 0.3, SemanticClass::kPillar);
+  testing::drawColumn(beside, place, 0.3, SemanticClass::kPillar);
+  EXPECT_EQ(told({view, beside}).size(), 2U);
 }
 
 TEST(LabelSight, SharesOfAnArea) {

@@ -248,7 +248,8 @@ PoseEstimate AvpSlam::estimate() const {
   return impl_->estimate();
 }
 
-PoseEstimate AvpSlam::addSemantics(const SemanticFrame& frame) {
+PoseEstimate AvpSlam::addSemantics(const SemanticFrame& frame,
+                                   const std::vector<LevelView>& /*views*/) {
   Impl& m = *impl_;
   PARKADE_CHECK(m.odometry.has_value(), "semantics before the first odometry");
   if (m.views.empty()) holdView();

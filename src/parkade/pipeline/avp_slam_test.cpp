@@ -49,7 +49,7 @@ Outcome drive(int laps, std::size_t delay, std::uint64_t seed) {
     pose.T_odom_vehicle = odometry.toSE3();
     pose.health = Health::kTracking;
     if (waiting.size() > delay) {
-      slam.addSemantics(waiting.front());
+      slam.addSemantics(waiting.front(), {});
       waiting.erase(waiting.begin());
     }
     const PoseEstimate e = slam.addOdometry(pose);
@@ -59,7 +59,7 @@ Outcome drive(int laps, std::size_t delay, std::uint64_t seed) {
     truth.push_back(poses.front().inverse() * poses[k]);
     reckoned.push_back(odometry);
   }
-  for (const SemanticFrame& frame : waiting) slam.addSemantics(frame);
+  for (const SemanticFrame& frame : waiting) slam.addSemantics(frame, {});
   slam.finish();
   result.final_trajectory = slam.finalTrajectory();
   const auto rmse = [&](const auto& at) {

@@ -119,7 +119,8 @@ void FusedMapper::Impl::followCorrections() {
   objects.moveWithAnchors(correction);
 }
 
-void FusedMapper::Impl::enterMaps(const SemanticFrame& frame, const View& view) {
+void FusedMapper::Impl::enterMaps(const SemanticFrame& frame,
+                                  const std::vector<LevelView>& level_views, const View& view) {
   const SE2 pose = poseOf(view);
   const TimeNs t_ns = view.odometry.t_ns;
   if (!frame.labels.labels.empty()) {
@@ -129,7 +130,7 @@ void FusedMapper::Impl::enterMaps(const SemanticFrame& frame, const View& view) 
   }
   slots.update(frame.slots, t_ns, pose, open().anchor);
   objects.update(frame.objects, pose, filter.anchor(view.anchor).z, open().anchor,
-                 frame.labels.labels.empty() ? nullptr : &frame.labels);
+                 frame.labels.labels.empty() ? nullptr : &frame.labels, level_views);
 }
 
 FusedMapper::FusedMapper(const FusedMapperOptions& options, std::vector<Eigen::Vector3d> viewpoints)
@@ -163,7 +164,8 @@ PoseEstimate FusedMapper::estimate() const {
   return impl_->estimate();
 }
 
-PoseEstimate FusedMapper::addSemantics(const SemanticFrame& frame) {
+PoseEstimate FusedMapper::addSemantics(const SemanticFrame& frame,
+                                       const std::vector<LevelView>& views) {
   Impl& m = *impl_;
   PARKADE_CHECK(m.odometry.has_value(), "semantics before the first odometry");
   if (m.views.empty()) {
@@ -186,7 +188,7 @@ PoseEstimate FusedMapper::addSemantics(const SemanticFrame& frame) {
     m.open().submap.add(frame, m.between(m.open().anchor, view));
   }
   if (std::exchange(m.corrected, false)) m.followCorrections();
-  m.enterMaps(frame, view);
+  m.enterMaps(frame, views, view);
   if (!begins) m.filter.removeAnchor(view.anchor);
   return m.estimate();
 }

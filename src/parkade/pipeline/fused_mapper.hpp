@@ -107,7 +107,8 @@ class FusedMapper final : public SemanticMapper {
   PoseEstimate addOdometry(const PoseEstimate& odometry) override;
   void holdView() override;
   void dropView() override;
-  PoseEstimate addSemantics(const SemanticFrame& frame) override;
+  PoseEstimate addSemantics(const SemanticFrame& frame,
+                            const std::vector<LevelView>& views) override;
   [[nodiscard]] PoseEstimate estimate() const override;
   void finish() override;
   [[nodiscard]] ParkingMap map(const std::string& name) const override;

@@ -51,7 +51,8 @@ class FusedMapper::Impl {
   void predict(const PoseEstimate& odometry);
   void hold();
   void beginStretch(const View& view);
-  void enterMaps(const SemanticFrame& frame, const View& view);
+  void enterMaps(const SemanticFrame& frame, const std::vector<LevelView>& level_views,
+                 const View& view);
   void followCorrections();
 
   void readCompass(const SemanticFrame& frame, const View& view);

@@ -91,7 +91,7 @@ DriveResult drive(const Plan& plan, const DriveOptions& options, std::uint64_t s
     vio.health = Health::kTracking;
     PoseEstimate fused = mapper.addOdometry(vio);
     if (way < options.blind_from || way > options.blind_to) {
-      fused = mapper.addSemantics(observer.observe(t_ns, poses[k], random, options.labels));
+      fused = mapper.addSemantics(observer.observe(t_ns, poses[k], random, options.labels), {});
     }
     const SE2 truth = T_start.inverse() * poses[k];
     const SE2 estimate = SE2::fromSE3(fused.T_odom_vehicle);

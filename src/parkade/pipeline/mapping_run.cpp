@@ -105,6 +105,7 @@ class MappingRun::Impl {
     int number = 0;  // of the frame set
     SE3 T_odom_vehicle;
     Result<SemanticFrame> frame = Error{"not looked yet"};
+    std::vector<LevelView> views;
     std::future<void> done;
   };
 
@@ -247,6 +248,7 @@ void MappingRun::Impl::look(Estimation& work, const PoseEstimate& odometry_pose)
     at->frame = front_end->look(at->frames);
     at->frames.images.clear();
     if (!at->frame) return;
+    at->views = front_end->views();
     for (PipelineObserver* observer : observers) {
       observer->onFeatures({front_end->picture(), *at->frame});
     }
@@ -266,7 +268,7 @@ void MappingRun::Impl::enterLooks(int before) {
       continue;
     }
     const Clock::time_point begin = Clock::now();
-    mapper->addSemantics(*item->frame);
+    mapper->addSemantics(*item->frame, item->views);
     fuse_clock_.add(millisecondsBetween(begin, Clock::now()));
     for (PipelineObserver* observer : observers) {
       observer->onMap({*item->frame, item->T_odom_vehicle, mapper->localMap()});

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "parkade/mapping/local_map.hpp"
 #include "parkade/mapping/parking_map.hpp"
+#include "parkade/types/level_view.hpp"
 #include "parkade/types/pose_estimate.hpp"
 #include "parkade/types/semantic_features.hpp"
 #include "parkade/types/trajectory.hpp"
@@ -24,8 +26,10 @@ class SemanticMapper {
   /// Keeps the last odometry's frame set as one whose features will come, a few frame sets later.
   virtual void holdView() = 0;
   /// The features of the first frame set held (of the last one given to addOdometry(), where none
-  /// is held). Gives the last frame set's pose anew.
-  virtual PoseEstimate addSemantics(const SemanticFrame& frame) = 0;
+  /// is held). views: labels of cameras' own pictures of that frame set, any number of them. Gives
+  /// the last frame set's pose anew.
+  virtual PoseEstimate addSemantics(const SemanticFrame& frame,
+                                    const std::vector<LevelView>& views) = 0;
 
   /// The first frame set held gets no features after all.
   virtual void dropView() = 0;
