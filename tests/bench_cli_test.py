@@ -7,6 +7,7 @@ import html.parser
 import json
 import pathlib
 import re
+import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -22,6 +23,17 @@ def bench(*arguments):
     return subprocess.run(
         [PARKADE, "bench", *map(str, arguments)], capture_output=True, text=True, timeout=1400
     )
+
+
+def map_rows(path):
+    """All that a map holds, table by table; of meta no more than its keys."""
+    with sqlite3.connect(f"file:{path}?mode=ro", uri=True) as database:
+        tables = database.execute("SELECT name FROM sqlite_master WHERE type='table'").fetchall()
+        columns = {"meta": "key"}
+        return {
+            table: sorted(database.execute(f"SELECT {columns.get(table, '*')} FROM {table}"))
+            for (table,) in tables
+        }
 
 
 def slot_scores(run):
@@ -161,6 +173,24 @@ class BenchTest(unittest.TestCase):
         text = self.check_page(runs / "vis" / "report.html")
         self.assertIn("Layers: none, as the method vis makes no map", text)
         self.assertIn("Features: none, as the method vis uses no semantics", text)
+
+    def test_the_same_drive_again_gives_the_same_bytes(self):
+        first = self.out / "runs" / "test1" / "fused"
+        again = self.imports.parent / "again"
+        result = subprocess.run(
+            [PARKADE, "run", self.out / "sequences" / "test1", "--method", "fused", "--threads", "1",
+             "--out", again],
+            capture_output=True, text=True, timeout=1400,
+        )  # fmt: skip
+        self.assertEqual(result.returncode, 0, result.stderr)
+        # The cameras' own pictures were looked at, so what they say is in the map.
+        stages = json.loads((again / "timing.json").read_text(encoding="utf-8"))["stages"]
+        self.assertGreater(stages["zone markers"]["count"], 5)
+        for name in ["trajectory.tum", "trajectory_vio.tum", "covariance.csv", "health.csv"]:
+            self.assertEqual((first / name).read_bytes(), (again / name).read_bytes(), name)
+        rows = map_rows(again / "map.db")
+        self.assertGreater(len(rows["object"]), 0)
+        self.assertEqual(map_rows(first / "map.db"), rows)
 
     def test_goes_on_where_it_stopped(self):
         pictures = list((self.out / "sequences").rglob("*.jpg"))
