@@ -39,7 +39,9 @@ struct SlotRegistry::Impl {
   void add(const Seen& seen, TimeNs t_ns, std::int64_t anchor);
   void countMisses(const SE2& T_world_vehicle, const std::vector<bool>& was_seen,
                    std::size_t old_count);
+  void forgetOdd();
   void mergeDuplicates();
+  [[nodiscard]] std::vector<const Track*> distinct() const;
   [[nodiscard]] bool told(const Track& track) const {
     // Seen rarely while in plain sight: something else.
     return track.observations >= options.min_observations &&
@@ -97,12 +99,50 @@ void SlotRegistry::Impl::countMisses(const SE2& T_world_vehicle, const std::vect
   }
 }
 
+// What was seen once and then not again while in plain sight, on a slot that is known better.
+void SlotRegistry::Impl::forgetOdd() {
+  constexpr int kMisses = 5;
+  const auto odd = [&](const Track& track) {
+    return track.observations == 1 && track.misses >= kMisses;
+  };
+  tracks.erase(std::remove_if(tracks.begin(), tracks.end(), odd), tracks.end());
+}
+
+// Those told, ordered by id; of several on one place the one that explains more of what was seen.
+std::vector<const Track*> SlotRegistry::Impl::distinct() const {
+  std::vector<const Track*> order;
+  for (const Track& track : tracks) {
+    if (told(track)) order.push_back(&track);
+  }
+  const auto merit = [](const Track* track) {
+    return track->confidence - 0.5 * static_cast<double>(track->misses);
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](const Track* a, const Track* b) { return merit(a) > merit(b); });
+  constexpr double kLargest = 8.0;  // m
+  std::vector<const Track*> chosen;
+  for (const Track* track : order) {
+    const bool taken = std::any_of(chosen.begin(), chosen.end(), [&](const Track* other) {
+      return (track->centre() - other->centre()).norm() < kLargest &&
+             overlapShare(track->corners(), other->corners()) > options.duplicate_overlap;
+    });
+    if (!taken) chosen.push_back(track);
+  }
+  std::sort(chosen.begin(), chosen.end(),
+            [](const Track* a, const Track* b) { return a->id < b->id; });
+  return chosen;
+}
+
 void SlotRegistry::Impl::mergeDuplicates() {
+  constexpr double kSame = 0.6;  // m, corners of one entrance, seen in passes that were drawn apart
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     for (std::size_t j = tracks.size() - 1; j > i; --j) {
       if ((tracks[i].middle() - tracks[j].middle()).norm() > 6.0) continue;
       const double share = overlapShare(tracks[i].corners(), tracks[j].corners());
       if (share < options.duplicate_overlap) continue;
+      // Another reading of the place stays one: distinct() weighs them.
+      const Vector4 d = tracks[j].entrance - tracks[i].entrance;
+      if (d.head<2>().norm() > kSame || d.tail<2>().norm() > kSame) continue;
       Track& kept = tracks[i];
       Track other = tracks[j];
       // The one seen more often has the better shape; the older id stays.
@@ -179,19 +219,13 @@ void SlotRegistry::update(const std::vector<SlotObservation>& observations, Time
     seen_used[pair.seen] = true;
     m.fuse(m.tracks[pair.track], all[pair.seen], t_ns);
   }
+  // What lies on a known slot may be that slot seen badly, or the other way round: both are kept
+  // until slots() has to choose.
   for (std::size_t j = 0; j < all.size(); ++j) {
-    if (seen_used[j]) continue;
-    const Vector4& e = all[j].entrance;
-    const Corners corners = {e.head<2>(), e.tail<2>(), e.tail<2>() + all[j].rear_right,
-                             e.head<2>() + all[j].rear_left};
-    // What lies on a known slot is that slot seen badly, never a second one.
-    const bool on_known = std::any_of(m.tracks.begin(), m.tracks.end(), [&](const Track& track) {
-      return (track.middle() - 0.5 * (e.head<2>() + e.tail<2>())).norm() < 6.0 &&
-             overlapShare(track.corners(), corners) > m.options.duplicate_overlap;
-    });
-    if (!on_known) m.add(all[j], t_ns, anchor);
+    if (!seen_used[j]) m.add(all[j], t_ns, anchor);
   }
   m.countMisses(T_world_vehicle, track_used, old_count);
+  m.forgetOdd();
 }
 
 void SlotRegistry::moveWithAnchors(const std::function<SE2(std::int64_t)>& correction) {
@@ -221,11 +255,9 @@ std::vector<MapSlot> SlotRegistry::slots(TimeNs now_ns,
   std::vector<Eigen::Vector2d> way;
   for (const Impl::Place& place : impl_->way) way.push_back(place.p);
   std::vector<MapSlot> result;
-  for (const Track& track : impl_->tracks) {
-    if (!impl_->told(track) || drivenThrough(track.corners(), way) ||
-        holdsRoadMarking(track.corners(), objects)) {
-      continue;
-    }
+  for (const Track* chosen : impl_->distinct()) {
+    const Track& track = *chosen;
+    if (drivenThrough(track.corners(), way) || holdsRoadMarking(track.corners(), objects)) continue;
     MapSlot slot;
     slot.id = track.id;
     slot.corners = track.corners();

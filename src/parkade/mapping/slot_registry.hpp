@@ -23,7 +23,7 @@ struct SlotRegistryOptions {
   int min_observations = 3;
   double availability_gain = 0.4;
   double change_time_s = 600.0;
-  double duplicate_overlap = 0.4;
+  double duplicate_overlap = 0.25;
   double zone_range_m = 8.0;
 
   void visit(OptionVisitor& v) {
@@ -48,7 +48,9 @@ struct SlotRegistryOptions {
 };
 
 /// The parking slots that were seen: stable ids, corners fused over all observations, availability
-/// as a Bayes filter over time, no slot twice. World frame.
+/// as a Bayes filter over time. Readings of one place that do not agree are kept beside each other,
+/// each with its own observations; the one that explains more of them is told, no slot twice. World
+/// frame.
 class SlotRegistry {
  public:
   explicit SlotRegistry(const SlotRegistryOptions& options);

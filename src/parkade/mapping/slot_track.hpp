@@ -46,6 +46,9 @@ struct Track {
   [[nodiscard]] Eigen::Vector2d middle() const {
     return 0.5 * (entrance.head<2>() + entrance.tail<2>());
   }
+  [[nodiscard]] Eigen::Vector2d centre() const {
+    return middle() + 0.25 * (rear_left + rear_right);
+  }
   [[nodiscard]] double width() const { return (entrance.tail<2>() - entrance.head<2>()).norm(); }
 };
 
