@@ -65,6 +65,8 @@ bool isMarkedObject(SemanticClass semantic_class) {
     case SemanticClass::kStopLine:
     case SemanticClass::kCrossing:
     case SemanticClass::kSpeedBump:
+    case SemanticClass::kPaintedNumber:
+    case SemanticClass::kWheelStop:
       return true;
     default:
       return false;
