@@ -65,28 +65,32 @@ cv::Mat SmearFinder::find(const BevLabels& labels) const {
   std::vector<Sight> sights(labels.labels.total());
   cv::Mat smear(labels.labels.size(), CV_8UC1, cv::Scalar(0));
   const auto least = static_cast<float>(options_.least_m);
-  for (const Step& step : outwards_) {
-    Sight sight;
-    if (step.before >= 0) sight = sights[static_cast<std::size_t>(step.before)];
-    const auto semantic_class = static_cast<SemanticClass>(labels.labels.data[step.pixel]);
-    const bool wall = semantic_class == SemanticClass::kWall;
-    const bool structure = wall || semantic_class == SemanticClass::kPillar ||
-                           semantic_class == SemanticClass::kZoneMarker;
-    if (semantic_class == SemanticClass::kVehicle) {
-      sight.vehicle += step.length;
-      sight.behind_car = sight.behind_car || (!sight.blocked && sight.vehicle >= least);
-    } else {
-      sight.vehicle = 0.0F;
+  // Where cameras' parts of the picture meet, a pixel may come before the one in front of it, which
+  // is another camera's: the second time that one is known.
+  for (int pass = 0; pass < 2; ++pass) {
+    for (const Step& step : outwards_) {
+      Sight sight;
+      if (step.before >= 0) sight = sights[static_cast<std::size_t>(step.before)];
+      const auto semantic_class = static_cast<SemanticClass>(labels.labels.data[step.pixel]);
+      const bool wall = semantic_class == SemanticClass::kWall;
+      const bool structure = wall || semantic_class == SemanticClass::kPillar ||
+                             semantic_class == SemanticClass::kZoneMarker;
+      if (semantic_class == SemanticClass::kVehicle) {
+        sight.vehicle += step.length;
+        sight.behind_car = sight.behind_car || (!sight.blocked && sight.vehicle >= least);
+      } else {
+        sight.vehicle = 0.0F;
+      }
+      if (structure || sight.blocked) {
+        sight.structure += step.length;
+        sight.blocked = sight.blocked || sight.structure >= least;
+      } else {
+        sight.structure = 0.0F;
+      }
+      sights[static_cast<std::size_t>(step.pixel)] = sight;
+      const double depth = wall ? options_.wall_depth_m : options_.pillar_depth_m;
+      smear.data[step.pixel] = structure && (sight.behind_car || sight.structure > depth) ? 255 : 0;
     }
-    if (structure || sight.blocked) {
-      sight.structure += step.length;
-      sight.blocked = sight.blocked || sight.structure >= least;
-    } else {
-      sight.structure = 0.0F;
-    }
-    sights[static_cast<std::size_t>(step.pixel)] = sight;
-    const double depth = wall ? options_.wall_depth_m : options_.pillar_depth_m;
-    if (structure && (sight.behind_car || sight.structure > depth)) smear.data[step.pixel] = 255;
   }
   return smear;
 }

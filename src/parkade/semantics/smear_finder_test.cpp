@@ -47,6 +47,22 @@ TEST(SmearFinder, HolesInASmearAreNoNewEdges) {
   EXPECT_EQ(probe.at({6.0, 0.0}), SemanticClass::kFloor);  // only structure is doubted
 }
 
+// Two cameras whose parts meet amid the smear, the farther one's pixels being nearer to it.
+TEST(SmearFinder, GoesOnAcrossSeams) {
+  PaintedFloor floor = smearedPillar();
+  const BevGeometry& g = floor.labels.geometry;
+  BevViews views = BevViews::fromMiddle(g);
+  views.views.push_back({{3.0, -3.0}, 1.0});
+  const int seam = static_cast<int>(g.toPixel({6.5, 0.0}).y());
+  views.view_of.rowRange(0, seam).setTo(1);
+  const cv::Mat smear = SmearFinder(g, views, {}).find(floor.labels);
+  floor.labels.labels.setTo(0, smear);
+  const LabelProbe probe(floor.labels);
+  for (double y = -0.15; y < 0.2; y += 0.04) {
+    EXPECT_EQ(probe.at({6.55, y}), SemanticClass::kUnknown) << y;
+  }
+}
+
 TEST(SmearFinder, WhatACarHidesHasNoPlace) {
   PaintedFloor floor = smearedPillar();
   floor.polygon({{3.0, -1.0}, {4.0, -1.0}, {4.0, 0.0}, {3.0, 0.0}}, SemanticClass::kVehicle, 40);
