@@ -80,12 +80,11 @@ def write_class_map(name, path):
         file.write("\n".join(lines) + "\n")
 
 
-def compare(network, name, onnx_path, program):
-    """Largest difference between OpenCV's and torch's logits, over two sizes of random input."""
-    width, height = NETWORKS[name]["size"]
+def compare(network, sizes, onnx_path, program):
+    """Ends the program where OpenCV's logits differ from torch's, on random input of each size."""
     worst = 0.0
     with tempfile.TemporaryDirectory() as folder:
-        for w, h in ((width, height), (width - 64, height - 32)):
+        for w, h in sizes:
             picture = np.random.default_rng(1).normal(size=(1, 3, h, w)).astype(np.float32)
             files = [os.path.join(folder, key) for key in ("in", "out")]
             picture.tofile(files[0])
@@ -96,25 +95,29 @@ def compare(network, name, onnx_path, program):
             worst = max(worst, float(np.abs(found - expected).max()))
             print(f"{w} x {h}: largest difference {np.abs(found - expected).max():.2g} of logits up "
                   f"to {np.abs(expected).max():.3g}")
-    return worst
+    if worst > 1e-3:
+        sys.exit(f"OpenCV and torch differ by {worst:g}")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__,
+def parse_arguments(doc, state_help):
+    parser = argparse.ArgumentParser(description=doc,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("state", help="state.pt of a training")
+    parser.add_argument("state", help=state_help)
     parser.add_argument("--out", required=True, help="path without ending")
     parser.add_argument("--check", default="build/release/parkade_onnx_check",
                         help="program that runs the network in OpenCV, or none")
-    a = parser.parse_args()
+    return parser.parse_args()
+
+
+def main():
+    a = parse_arguments(__doc__, "state.pt of a training")
     network, state = load(a.state)
     export(network, state["name"], a.out + ".onnx")
     write_class_map(state["name"], a.out)
     print(f"{a.out}.onnx: {os.path.getsize(a.out + '.onnx') / 1e6:.2f} MB, step {state['step']}")
     if a.check != "none":
-        worst = compare(network, state["name"], a.out + ".onnx", a.check)
-        if worst > 1e-3:
-            sys.exit(f"OpenCV and torch differ by {worst:g}")
+        width, height = NETWORKS[state["name"]]["size"]
+        compare(network, [(width, height), (width - 64, height - 32)], a.out + ".onnx", a.check)
 
 
 if __name__ == "__main__":
