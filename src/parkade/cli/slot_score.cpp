@@ -135,7 +135,7 @@ std::vector<TrueSlot> SlotScore::trueSlots(const SemanticSampler& sampler,
                                            const BevLabels& truth) const {
   const sim::Garage& garage = sampler.simulation().garage();
   const GroundAttitude& a = sample.true_attitude;
-  const SO3 tilt = SO3::exp({0.0, a.pitch, 0.0}) * SO3::exp({a.roll, 0.0, 0.0});
+  const SO3 tilt = SO3::fromYawPitchRoll(0.0, a.pitch, a.roll);
   const SE3 T_vehicle_world = sample.T_world_vehicle.inverse();
   const BevGeometry& g = truth.geometry;
   const LabelProbe probe(truth);

@@ -37,6 +37,7 @@ double shareInside(const std::array<Vector2d, 4>& a, const std::array<Vector2d, 
   }
   return static_cast<double>(inside) / (kSteps * kSteps);
 }
+
 class SlotRanking {
  public:
   SlotRanking(std::vector<SlotCandidate>& candidates, const LabelProbe& probe,

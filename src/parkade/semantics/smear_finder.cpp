@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "parkade/core/check.hpp"
 #include "parkade/types/semantic_class.hpp"
@@ -26,7 +27,7 @@ SmearFinder::SmearFinder(const BevGeometry& geometry, const BevViews& views,
     : geometry_(geometry), options_(options) {
   PARKADE_CHECK(views.view_of.cols == geometry.width_px && views.view_of.rows == geometry.height_px,
                 "views of {} x {} px", views.view_of.cols, views.view_of.rows);
-  std::vector<float> distance;
+  std::vector<std::pair<float, Step>> outwards;  // by distance from the camera, px
   for (int v = 0; v < geometry.height_px; ++v) {
     for (int u = 0; u < geometry.width_px; ++u) {
       const auto index = views.view_of.at<std::uint8_t>(v, u);
@@ -34,7 +35,6 @@ SmearFinder::SmearFinder(const BevGeometry& geometry, const BevViews& views,
       const Eigen::Vector2d d = geometry.toPixel(views.views[index].foot) - Eigen::Vector2d(u, v);
       Step step;
       step.pixel = v * geometry.width_px + u;
-      distance.push_back(static_cast<float>(d.norm()));
       // The longer component goes one pixel, so that no pixel is its own neighbour.
       const double longer = std::max(std::abs(d.x()), std::abs(d.y()));
       if (longer >= 1.0) {
@@ -45,17 +45,13 @@ SmearFinder::SmearFinder(const BevGeometry& geometry, const BevViews& views,
           step.length = static_cast<float>(d.norm() / longer * geometry.metres_per_px);
         }
       }
-      outwards_.push_back(step);
+      outwards.emplace_back(static_cast<float>(d.norm()), step);
     }
   }
-  std::vector<std::size_t> order(outwards_.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return distance[a] < distance[b]; });
-  std::vector<Step> sorted;
-  sorted.reserve(order.size());
-  for (const std::size_t i : order) sorted.push_back(outwards_[i]);
-  outwards_ = std::move(sorted);
+  std::stable_sort(outwards.begin(), outwards.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  outwards_.reserve(outwards.size());
+  for (const auto& [distance, step] : outwards) outwards_.push_back(step);
 }
 
 cv::Mat SmearFinder::find(const BevLabels& labels) const {
