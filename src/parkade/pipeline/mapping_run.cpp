@@ -388,7 +388,7 @@ Result<std::unique_ptr<MappingRun>> MappingRun::create(const Rig& rig,
   if (method == RunMethod::kVis) {
     return std::unique_ptr<MappingRun>(new MappingRun(std::move(impl)));
   }
-  auto front_end = SemanticFrontEnd::create(rig, options.semantics);
+  auto front_end = SemanticFrontEnd::create(rig, *masks, options.semantics);
   if (!front_end) return front_end.error();
   impl->front_end = std::move(front_end).value();
   if (method != RunMethod::kFused) {

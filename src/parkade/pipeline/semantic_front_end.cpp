@@ -12,7 +12,6 @@
 #include "parkade/geometry/se2.hpp"
 #include "parkade/pipeline/stitched_views.hpp"
 #include "parkade/semantics/segmentation.hpp"
-#include "parkade/tracking/overlap.hpp"
 
 namespace parkade {
 
@@ -52,22 +51,20 @@ SemanticFrontEnd::SemanticFrontEnd(std::unique_ptr<Impl> impl) : impl_(std::move
 SemanticFrontEnd::~SemanticFrontEnd() = default;
 
 Result<std::unique_ptr<SemanticFrontEnd>> SemanticFrontEnd::create(
-    const Rig& rig, const SemanticFrontEndOptions& options) {
+    const Rig& rig, const std::vector<cv::Mat>& masks, const SemanticFrontEndOptions& options) {
   Result<SegmentationNetwork> network =
       SegmentationNetwork::loadOrOwn(options.network, "bev_segmentation");
   if (!network) return network.error();
-  const Result<std::vector<cv::Mat>> masks = readBodyMasks(rig);
-  if (!masks) return masks.error();
   auto impl = std::make_unique<Impl>(rig, options, std::move(network).value());
-  for (std::size_t c = 0; c < masks->size(); ++c) {
-    if (!(*masks)[c].empty()) impl->stitcher.setMask(static_cast<int>(c), (*masks)[c]);
+  for (std::size_t c = 0; c < masks.size(); ++c) {
+    if (!masks[c].empty()) impl->stitcher.setMask(static_cast<int>(c), masks[c]);
   }
   impl->bev_views = viewsOf(impl->stitcher, rig);
   impl->objects = std::make_unique<ObjectExtractor>(impl->stitcher.geometry(), impl->bev_views,
                                                     options.objects);
   impl->smear =
       std::make_unique<SmearFinder>(impl->stitcher.geometry(), impl->bev_views, options.smear);
-  auto zone_markers = ZoneMarkerFrontEnd::create(rig, options.zone_markers);
+  auto zone_markers = ZoneMarkerFrontEnd::create(rig, masks, options.zone_markers);
   if (!zone_markers) return zone_markers.error();
   impl->zone_markers = std::move(zone_markers).value();
   return std::unique_ptr<SemanticFrontEnd>(new SemanticFrontEnd(std::move(impl)));

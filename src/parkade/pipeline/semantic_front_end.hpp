@@ -61,8 +61,10 @@ struct SemanticFrontEndOptions {
 /// the cameras' own pictures.
 class SemanticFrontEnd {
  public:
-  /// Fails where there is no network, or masks of the rig cannot be read.
+  /// masks: of the own body, one a camera, empty ones for those that have none (readBodyMasks()).
+  /// Fails where there is no network.
   static Result<std::unique_ptr<SemanticFrontEnd>> create(const Rig& rig,
+                                                          const std::vector<cv::Mat>& masks,
                                                           const SemanticFrontEndOptions& options);
   ~SemanticFrontEnd();
 

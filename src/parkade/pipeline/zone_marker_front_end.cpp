@@ -10,7 +10,6 @@
 #include "parkade/semantics/level_views.hpp"
 #include "parkade/semantics/segmentation.hpp"
 #include "parkade/semantics/zone_text_reader.hpp"
-#include "parkade/tracking/overlap.hpp"
 
 namespace parkade {
 
@@ -55,7 +54,7 @@ ZoneMarkerFrontEnd::ZoneMarkerFrontEnd(std::unique_ptr<Impl> impl) : impl_(std::
 ZoneMarkerFrontEnd::~ZoneMarkerFrontEnd() = default;
 
 Result<std::unique_ptr<ZoneMarkerFrontEnd>> ZoneMarkerFrontEnd::create(
-    const Rig& rig, const ZoneMarkerFrontEndOptions& options) {
+    const Rig& rig, std::vector<cv::Mat> masks, const ZoneMarkerFrontEndOptions& options) {
   std::unique_ptr<ZoneMarkerFrontEnd> none;
   if (!options.enabled) return none;
   for (const auto& [named, own] : {std::pair(&options.network, "view_segmentation"),
@@ -71,11 +70,9 @@ Result<std::unique_ptr<ZoneMarkerFrontEnd>> ZoneMarkerFrontEnd::create(
   if (!reader_path) return reader_path.error();
   Result<ZoneTextReader> reader = ZoneTextReader::load(*reader_path);
   if (!reader) return reader.error();
-  Result<std::vector<cv::Mat>> masks = readBodyMasks(rig);
-  if (!masks) return masks.error();
-  return std::unique_ptr<ZoneMarkerFrontEnd>(new ZoneMarkerFrontEnd(std::make_unique<Impl>(
-      Impl{options, rig, std::move(masks).value(), std::move(network).value(),
-           std::move(reader).value(), ZoneMarkerTracker(options.tracker)})));
+  return std::unique_ptr<ZoneMarkerFrontEnd>(new ZoneMarkerFrontEnd(
+      std::make_unique<Impl>(Impl{options, rig, std::move(masks), std::move(network).value(),
+                                  std::move(reader).value(), ZoneMarkerTracker(options.tracker)})));
 }
 
 Result<std::vector<ObjectObservation>> ZoneMarkerFrontEnd::look(const FrameSet& frames,
@@ -85,9 +82,8 @@ Result<std::vector<ObjectObservation>> ZoneMarkerFrontEnd::look(const FrameSet& 
   const SE3 T_up_odom(SO3::fromTwoVectors(odometry.up_odom, Eigen::Vector3d::UnitZ()),
                       Eigen::Vector3d::Zero());
   const SE3 T_up_vehicle = T_up_odom * odometry.T_odom_vehicle;
-  const SE3 T_level_vehicle(
-      SO3::exp({0.0, attitude.pitch, 0.0}) * SO3::exp({attitude.roll, 0.0, 0.0}),
-      {0.0, 0.0, attitude.height});
+  const SE3 T_level_vehicle(SO3::fromYawPitchRoll(0.0, attitude.pitch, attitude.roll),
+                            {0.0, 0.0, attitude.height});
   m.views.clear();
   const std::size_t cameras = m.rig.cameras.size();
   int looked = 0;

@@ -44,9 +44,10 @@ class ZoneMarkerFrontEnd {
  public:
   /// Null where it is switched off, or where Parkade's own networks are not installed (which is
   /// logged). Fails where a network that the options name cannot be used, or one that is installed
-  /// is broken.
+  /// is broken. masks: of the own body, one a camera, empty ones for those that have none
+  /// (readBodyMasks()).
   static Result<std::unique_ptr<ZoneMarkerFrontEnd>> create(
-      const Rig& rig, const ZoneMarkerFrontEndOptions& options);
+      const Rig& rig, std::vector<cv::Mat> masks, const ZoneMarkerFrontEndOptions& options);
   ~ZoneMarkerFrontEnd();
 
   /// The markers that have become well enough known by this frame set, in its levelled vehicle

@@ -86,6 +86,10 @@ class ZoneMarkerDrive : public testing::Test {
     return frames;
   }
 
+  [[nodiscard]] Result<std::unique_ptr<ZoneMarkerFrontEnd>> create() const {
+    return ZoneMarkerFrontEnd::create(rig_, std::vector<cv::Mat>(rig_.cameras.size()), options_);
+  }
+
   std::filesystem::path folder_;
   Rig rig_;
   ZoneMarkerFrontEndOptions options_;
@@ -93,7 +97,7 @@ class ZoneMarkerDrive : public testing::Test {
 };
 
 TEST_F(ZoneMarkerDrive, PlacesAndReadsAMarkerThatIsPassed) {
-  const auto front_end = ZoneMarkerFrontEnd::create(rig_, options_);
+  const auto front_end = create();
   ASSERT_TRUE(front_end) << front_end.error().message;
   ASSERT_NE(*front_end, nullptr);
   std::vector<Eigen::Vector3d> places;
@@ -130,25 +134,25 @@ TEST_F(ZoneMarkerDrive, PlacesAndReadsAMarkerThatIsPassed) {
 
 TEST_F(ZoneMarkerDrive, SwitchedOffAndWrongFiles) {
   options_.enabled = false;
-  auto front_end = ZoneMarkerFrontEnd::create(rig_, options_);
+  auto front_end = create();
   ASSERT_TRUE(front_end);
   EXPECT_EQ(*front_end, nullptr);
 
   options_.enabled = true;
   options_.reader = (folder_ / "none.yaml").string();
-  front_end = ZoneMarkerFrontEnd::create(rig_, options_);
+  front_end = create();
   ASSERT_FALSE(front_end);
   EXPECT_THAT(front_end.error().message, HasSubstr("none.yaml"));
 
   options_.reader.clear();
   options_.network = (folder_ / "none.yaml").string();
-  front_end = ZoneMarkerFrontEnd::create(rig_, options_);
+  front_end = create();
   ASSERT_FALSE(front_end);
   EXPECT_THAT(front_end.error().message, HasSubstr("none.yaml"));
 
   // Without a network for views there is no search, and no failure.
   options_.network.clear();
-  front_end = ZoneMarkerFrontEnd::create(rig_, options_);
+  front_end = create();
   ASSERT_TRUE(front_end);
   EXPECT_EQ(*front_end != nullptr, static_cast<bool>(findModel("view_segmentation")));
 }
