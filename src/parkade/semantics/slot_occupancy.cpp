@@ -53,6 +53,8 @@ class Ray {
     }
     return edge;
   }
+  // How far behind p the body appears that stands over it.
+  [[nodiscard]] double blind() const { return range_ * hidden_ / (1.0 - hidden_); }
   [[nodiscard]] Vector2d at(double range) const { return camera_ + range * direction_; }
   // The same, if it is the body's lower edge and no wheel.
   [[nodiscard]] Vector2d below(double range) const { return at(range * (1.0 - hidden_)); }
@@ -65,6 +67,29 @@ class Ray {
   double step_;
   double hidden_;
 };
+
+// What the points of a slot's middle show.
+struct Evidence {
+  double floor = 0.0;  // points
+  double car = 0.0;
+  double blind = 0.0;  // m, mean
+};
+
+// A free slot shows floor nearly everywhere, a taken one a car over most of its middle: the share
+// of either tells, and where they are alike neither does. A few points tell little, and so does
+// what lies flat in sight: there floor is seen below a body, and only labels far behind speak of
+// it.
+double probability(const Evidence& e) {
+  constexpr double kStrongest = 4.0;  // log-odds
+  constexpr double kEnough = 30.0;    // points
+  constexpr double kSure = 0.4;       // beside a half
+  constexpr double kBlind = 1.5;      // m
+  const double points = e.floor + e.car;
+  if (points == 0.0) return 0.5;
+  const double share = std::clamp((e.floor / points - 0.5) / kSure, -1.0, 1.0);
+  const double weight = std::min(1.0, points / kEnough) * std::min(1.0, kBlind / (e.blind + 1e-9));
+  return 1.0 / (1.0 + std::exp(-kStrongest * weight * share));
+}
 
 }  // namespace
 
@@ -96,32 +121,26 @@ double probabilityFree(const LabelProbe& probe, const BevViews& views,
   // Any car covers this middle part: it is narrower and shorter than cars, wherever they stand.
   constexpr int kAcross = 9;
   constexpr int kDeep = 15;
-  double floor = 0.0;
-  double car = 0.0;
+  Evidence evidence;
   for (int j = 0; j < kDeep; ++j) {
     const double b = 0.25 + 0.5 * j / (kDeep - 1);
     for (int i = 0; i < kAcross; ++i) {
       const Vector2d p = at(0.3 + 0.4 * i / (kAcross - 1), b);
       const Ray ray(probe, views.viewAt(probe.labels().geometry, p), p);
       const Ray::Cover cover = ray.cover();
+      evidence.blind += ray.blind() / (kAcross * kDeep);
       if (cover.semantic_class == SemanticClass::kFloor) {
-        floor += 1.0;
+        evidence.floor += 1.0;
       } else if (cover.semantic_class == SemanticClass::kVehicle) {
         if (standsHere(ray, cover.range)) {
-          car += 1.0;
+          evidence.car += 1.0;
         } else if (!hidesGround(probe.at(p))) {
-          floor += 1.0;
+          evidence.floor += 1.0;
         }
       }
     }
   }
-  constexpr double kAll = kAcross * kDeep;
-  // A sixth of the middle is enough to tell; labels that disagree cancel each other. A car leaves
-  // no floor to see, while one beside the slot reaches into it: floor counts twice.
-  constexpr double kEnough = 18.0;
-  constexpr double kStrongest = 4.0;
-  const double log_odds = kStrongest * std::clamp(kEnough * (2.0 * floor - car) / kAll, -1.0, 1.0);
-  return 1.0 / (1.0 + std::exp(-log_odds));
+  return probability(evidence);
 }
 
 }  // namespace parkade
