@@ -96,6 +96,23 @@ bool occupiedAt(const TruthSlot& slot, TimeNs t_ns, const MapTruth& truth) {
   });
 }
 
+// A slot halfway between markers belongs to either.
+bool isZone(const std::string& text, const TruthSlot& slot, const MapTruth& truth) {
+  if (text == slot.zone) return true;
+  constexpr double kTie = 0.5;  // m
+  const Eigen::Vector2d middle =
+      0.25 * (slot.corners[0] + slot.corners[1] + slot.corners[2] + slot.corners[3]);
+  double nearest = std::numeric_limits<double>::infinity();
+  double called_so = std::numeric_limits<double>::infinity();
+  for (const TruthObject& object : truth.objects) {
+    if (object.semantic_class != SemanticClass::kZoneMarker || object.text.empty()) continue;
+    const double distance = (object.position.head<2>() - middle).norm();
+    nearest = std::min(nearest, distance);
+    if (object.text == text) called_so = std::min(called_so, distance);
+  }
+  return called_so < nearest + kTie;
+}
+
 void scoreContent(const MapSlot& told, const TruthSlot& real, const MapTruth& truth,
                   SlotScore& score) {
   constexpr double kFree = 0.65;  // as maps are drawn and exported
@@ -112,7 +129,7 @@ void scoreContent(const MapSlot& told, const TruthSlot& real, const MapTruth& tr
   }
   if (!real.zone.empty()) {
     ++score.zones;
-    score.zones_right += told.zone == real.zone ? 1 : 0;
+    score.zones_right += isZone(told.zone, real, truth) ? 1 : 0;
   }
 }
 

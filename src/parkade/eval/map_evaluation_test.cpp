@@ -105,6 +105,16 @@ TEST(MapEvaluation, PerfectMapHasPerfectScores) {
   EXPECT_EQ(e.objects.at(SemanticClass::kZoneMarker).texts_right, 1);
 }
 
+TEST(MapEvaluation, SlotHalfwayBetweenMarkersMayHaveEitherZone) {
+  MapTruth truth = rowTruth(3);
+  ParkingMap map = perfectMap(truth, kPlace);
+  truth.slots[2].zone = "A2";
+  // As far from the middle slot as A1 is.
+  truth.objects.push_back({SemanticClass::kZoneMarker, {7.5, 7.5, 1.7}, "A2", {}, 4});
+  for (MapSlot& slot : map.slots) slot.zone = "A2";
+  EXPECT_EQ(evaluateMap(map, kPlace, truth).slots.zones_right, 2);  // not the first
+}
+
 TEST(MapEvaluation, TellsHowFarCornersAreOffAndWhatAFitLeaves) {
   const MapTruth truth = rowTruth(4);
   ParkingMap map = perfectMap(truth, kPlace);

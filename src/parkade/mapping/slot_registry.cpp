@@ -271,7 +271,7 @@ std::vector<MapSlot> SlotRegistry::slots(TimeNs now_ns,
     double nearest = impl_->options.zone_range_m;
     for (const MapObject& object : objects) {
       if (object.semantic_class != SemanticClass::kZoneMarker || object.text.empty()) continue;
-      const double distance = (object.position.head<2>() - track.middle()).norm();
+      const double distance = (object.position.head<2>() - track.centre()).norm();
       if (distance >= nearest) continue;
       nearest = distance;
       slot.zone = object.text;

@@ -24,7 +24,7 @@ struct SlotRegistryOptions {
   double availability_gain = 0.4;
   double change_time_s = 600.0;
   double duplicate_overlap = 0.25;
-  double zone_range_m = 8.0;
+  double zone_range_m = 15.0;
 
   void visit(OptionVisitor& v) {
     v.field("association_sigma_m", association_sigma_m, "m",
@@ -42,8 +42,8 @@ struct SlotRegistryOptions {
             "Time after which what was seen of a slot says little: cars come and go.", 1.0, 1e7);
     v.field("duplicate_overlap", duplicate_overlap, "ratio",
             "Slots that share more of the smaller one's area are one.", 0.05, 1.0);
-    v.field("zone_range_m", zone_range_m, "m", "A slot takes the zone of a marker this near.", 0.0,
-            100.0);
+    v.field("zone_range_m", zone_range_m, "m",
+            "A slot takes the zone of the marker next to its middle, if this near.", 0.0, 100.0);
   }
 };
 
