@@ -12,6 +12,7 @@
 #include "parkade/geometry/se2.hpp"
 #include "parkade/semantics/marking_arrows.hpp"
 #include "parkade/semantics/marking_pieces.hpp"
+#include "parkade/semantics/standing_foot.hpp"
 #include "parkade/semantics/tilt_error.hpp"
 
 namespace parkade {
@@ -213,8 +214,11 @@ std::vector<ObjectObservation> MarkingExtractor::extract(const BevLabels& labels
                                                          double attitude_sigma) const {
   const double pixel = labels.geometry.metres_per_px;
   std::vector<ObjectObservation> objects;
-  for (const MarkingPiece& piece :
-       findMarkings(labels, options_.min_confidence, options_.min_pixels)) {
+  for (MarkingPiece& piece : findMarkings(labels, options_.min_confidence, options_.min_pixels)) {
+    constexpr double kStopDepth = 0.16;  // m
+    if (piece.semantic_class == SemanticClass::kWheelStop) {
+      piece = footOf(piece, views, labels.geometry, kStopDepth);
+    }
     if (piece.cut) continue;
     ObjectObservation object;
     object.semantic_class = piece.semantic_class;

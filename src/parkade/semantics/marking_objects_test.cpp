@@ -156,6 +156,29 @@ TEST(MarkingObjects, WhatIsCutOffIsLeftOut) {
   EXPECT_TRUE(extractor.extract(hidden.labels, hidden.views, kAttitudeSigma).empty());
 }
 
+TEST(MarkingObjects, WheelStopsStandWhereTheirSmearBegins) {
+  const MarkingExtractor extractor({});
+  for (const double angle : {0.0, 0.5}) {
+    Floor floor;
+    const SE2 place(angle, {5.5, -1.0});
+    // The camera is at the picture's middle, (1.4, 0): a body 0.12 m high reaches half a metre on,
+    // into what is labelled a vehicle there.
+    floor.paint(SemanticClass::kVehicle, box(0.4, -1.5, 1.5, 1.5), place);
+    const Eigen::Vector2d away =
+        (place.rotationMatrix().transpose() * (place.translation() - Eigen::Vector2d(1.4, 0.0)))
+            .normalized();
+    for (double smear = 0.5; smear >= 0.0; smear -= 0.02) {
+      Polygon body = box(-0.08, -0.85, 0.08, 0.85);
+      for (Eigen::Vector2d& p : body) p += smear * away;
+      floor.paint(SemanticClass::kWheelStop, body, place);
+    }
+    const auto objects = extractor.extract(floor.labels, floor.views, kAttitudeSigma);
+    ASSERT_EQ(objects.size(), 1U) << angle;
+    EXPECT_EQ(objects[0].semantic_class, SemanticClass::kWheelStop);
+    EXPECT_LT((objects[0].position.head<2>() - place.translation()).norm(), 0.1) << angle;
+  }
+}
+
 TEST(MarkingObjects, BoxesLieOnTheirPaint) {
   const MarkingExtractor extractor({});
   struct Case {

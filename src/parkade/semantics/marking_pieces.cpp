@@ -95,6 +95,7 @@ void splitClass(const BevLabels& bev, const cv::Mat& hidden, const ClassGap& ent
       if (painted[u] == 0 || sure[u] < min_confidence) continue;
       const auto i = static_cast<std::size_t>(index[u]);
       pieces[i].points.push_back(bev.geometry.toGround(Eigen::Vector2d(u + box.x, v + box.y)));
+      pieces[i].at_edge.push_back(edge[u] != 0);
       sums[i].confidence += sure[u];
       sums[i].at_edge += edge[u] != 0 ? 1 : 0;
     }
@@ -105,11 +106,7 @@ void splitClass(const BevLabels& bev, const cv::Mat& hidden, const ClassGap& ent
     constexpr int kTouches = 3;
     piece.semantic_class = entry.semantic_class;
     piece.confidence = sums[i].confidence / (255.0 * static_cast<double>(piece.points.size()));
-    // What stands up is smeared, and its smear may well reach behind something.
-    const int allowed = entry.semantic_class == SemanticClass::kWheelStop
-                            ? static_cast<int>(piece.points.size() / 5)
-                            : 0;
-    piece.cut = sums[i].at_edge >= kTouches + allowed;
+    piece.cut = sums[i].at_edge >= kTouches;
     out.push_back(std::move(piece));
   }
 }

@@ -14,6 +14,7 @@ namespace parkade {
 struct MarkingPiece {
   SemanticClass semantic_class = SemanticClass::kUnknown;
   std::vector<Eigen::Vector2d> points;  ///< ground points of its pixels, levelled vehicle frame
+  std::vector<bool> at_edge;            ///< of each: the floor beside it is hidden
   double confidence = 0.0;              ///< mean of the labels' confidence, 0 to 1
   bool cut = false;  ///< goes on where the picture ends, or under what hides the floor
 };
