@@ -234,9 +234,15 @@ std::vector<ObjectObservation> MarkingExtractor::extract(const BevLabels& labels
     if (!found) continue;
     object.covariance = groundCovariance(views, labels.geometry, object.position.head<2>(),
                                          options_.sigma_px * pixel, attitude_sigma);
-    const Eigen::Vector2d ahead(std::cos(object.heading), std::sin(object.heading));
+    Eigen::Vector2d along(std::cos(object.heading), std::sin(object.heading));
+    if (piece.may_go_on) {
+      constexpr double kNextBar = 0.4;  // m, by which one more would move the middle
+      sigma_along = kNextBar;
+      along = (object.outline[1] - object.outline[0]).normalized();
+      object.confidence *= 0.5;  // others' outlines first
+    }
     object.covariance.topLeftCorner<2, 2>() +=
-        sigma_along * sigma_along * ahead * ahead.transpose();
+        sigma_along * sigma_along * along * along.transpose();
     objects.push_back(std::move(object));
   }
   return objects;

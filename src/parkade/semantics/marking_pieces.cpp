@@ -66,8 +66,10 @@ cv::Mat arrowPaint(const BevLabels& bev) {
   return paint;
 }
 
-void splitClass(const BevLabels& bev, const cv::Mat& hidden, const ClassGap& entry,
-                int min_confidence, int min_pixels, std::vector<MarkingPiece>& out) {
+// near_hidden: as hidden, a gap wider; empty: of no interest.
+void splitClass(const BevLabels& bev, const cv::Mat& hidden, const cv::Mat& near_hidden,
+                const ClassGap& entry, int min_confidence, int min_pixels,
+                std::vector<MarkingPiece>& out) {
   const cv::Mat paint = entry.semantic_class == SemanticClass::kArrow
                             ? arrowPaint(bev)
                             : cv::Mat(bev.labels == static_cast<int>(entry.semantic_class));
@@ -83,6 +85,7 @@ void splitClass(const BevLabels& bev, const cv::Mat& hidden, const ClassGap& ent
   struct Sum {
     double confidence = 0.0;
     int at_edge = 0;
+    int near_edge = 0;
   };
   std::vector<MarkingPiece> pieces(static_cast<std::size_t>(count));
   std::vector<Sum> sums(static_cast<std::size_t>(count));
@@ -98,6 +101,9 @@ void splitClass(const BevLabels& bev, const cv::Mat& hidden, const ClassGap& ent
       pieces[i].at_edge.push_back(edge[u] != 0);
       sums[i].confidence += sure[u];
       sums[i].at_edge += edge[u] != 0 ? 1 : 0;
+      if (!near_hidden.empty() && near_hidden.at<std::uint8_t>(v + box.y, u + box.x) != 0) {
+        ++sums[i].near_edge;
+      }
     }
   }
   for (std::size_t i = 1; i < pieces.size(); ++i) {
@@ -107,6 +113,7 @@ void splitClass(const BevLabels& bev, const cv::Mat& hidden, const ClassGap& ent
     piece.semantic_class = entry.semantic_class;
     piece.confidence = sums[i].confidence / (255.0 * static_cast<double>(piece.points.size()));
     piece.cut = sums[i].at_edge >= kTouches;
+    piece.may_go_on = sums[i].near_edge >= kTouches;
     out.push_back(std::move(piece));
   }
 }
@@ -140,17 +147,17 @@ std::vector<MarkingPiece> findMarkings(const BevLabels& labels, int min_confiden
   }
   std::vector<MarkingPiece> pieces;
   cv::Mat hidden;
-  cv::Mat far_hidden;
   for (const ClassGap& entry : kGaps) {
     if (counts[static_cast<std::size_t>(entry.semantic_class)] < min_pixels) continue;
-    // A crossing's next bar may lie a gap beyond what is seen.
-    const bool wide = entry.semantic_class == SemanticClass::kCrossing;
-    cv::Mat& mask = wide ? far_hidden : hidden;
-    constexpr double kBarGap = 0.5;  // m
-    const int reach =
-        wide ? static_cast<int>(std::lround(kBarGap / labels.geometry.metres_per_px)) : 2;
-    if (mask.empty()) mask = hiddenMask(labels.labels, reach);
-    splitClass(labels, mask, entry, min_confidence, min_pixels, pieces);
+    constexpr int kBeside = 2;  // px
+    if (hidden.empty()) hidden = hiddenMask(labels.labels, kBeside);
+    cv::Mat near_hidden;
+    if (entry.semantic_class == SemanticClass::kCrossing) {
+      constexpr double kBarGap = 0.5;  // m
+      near_hidden = hiddenMask(
+          labels.labels, static_cast<int>(std::lround(kBarGap / labels.geometry.metres_per_px)));
+    }
+    splitClass(labels, hidden, near_hidden, entry, min_confidence, min_pixels, pieces);
   }
   return pieces;
 }

@@ -16,7 +16,8 @@ struct MarkingPiece {
   std::vector<Eigen::Vector2d> points;  ///< ground points of its pixels, levelled vehicle frame
   std::vector<bool> at_edge;            ///< of each: the floor beside it is hidden
   double confidence = 0.0;              ///< mean of the labels' confidence, 0 to 1
-  bool cut = false;  ///< goes on where the picture ends, or under what hides the floor
+  bool cut = false;        ///< goes on where the picture ends, or under what hides the floor
+  bool may_go_on = false;  ///< the same beyond a gap in the paint: a crossing's next bar
 };
 
 /// Whether a label hides the floor or tells nothing of it.
