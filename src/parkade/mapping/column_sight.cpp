@@ -53,14 +53,14 @@ ColumnSight columnSight(const LevelView& view, const Eigen::Vector2d& foot) {
   return best >= 0.0 && best <= kLittle ? ColumnSight::kNotThere : ColumnSight::kUnsure;
 }
 
-bool standsBefore(const Eigen::Vector2d& before, const Eigen::Vector2d& foot,
+bool standsInLine(const Eigen::Vector2d& other, const Eigen::Vector2d& foot,
                   const Eigen::Vector2d& eye) {
   constexpr double kDepth = 0.5;   // m
-  constexpr double kAcross = 0.6;  // m
-  const Eigen::Vector2d far = foot - eye;
-  const Eigen::Vector2d near = before - eye;
-  if (far.dot(near) <= 0.0 || near.norm() > far.norm() - kDepth) return false;
-  return std::abs(cross(far, near)) < kAcross * far.norm();
+  constexpr double kAcross = 0.6;  // m, of the nearer one
+  const Eigen::Vector2d d = foot - eye;
+  const Eigen::Vector2d e = other - eye;
+  if (d.dot(e) <= 0.0 || std::abs(e.norm() - d.norm()) < kDepth) return false;
+  return std::abs(cross(d, e)) < kAcross * std::max(d.norm(), e.norm());
 }
 
 }  // namespace parkade

@@ -20,8 +20,9 @@ enum class ColumnSight {
 /// of sight counts. Vehicles and people only hide. Another pillar on the line of sight looks alike.
 ColumnSight columnSight(const LevelView& view, const Eigen::Vector2d& foot);
 
-/// Whether `before` is nearer to an eye than `foot` and within 0.6 m of the line of sight to that.
-bool standsBefore(const Eigen::Vector2d& before, const Eigen::Vector2d& foot,
+/// Whether another place than `foot` lies on an eye's line of sight to that, before or behind it,
+/// to within 0.6 m: what stands there looks as if it stood at foot.
+bool standsInLine(const Eigen::Vector2d& other, const Eigen::Vector2d& foot,
                   const Eigen::Vector2d& eye);
 
 }  // namespace parkade

@@ -47,13 +47,13 @@ TEST(ColumnSight, NothingIsSaidTooNearOrTooFar) {
   EXPECT_EQ(columnSight(view, {9.5, 0.0}), ColumnSight::kNotThere);
 }
 
-TEST(ColumnSight, WhatStandsBefore) {
+TEST(ColumnSight, WhatStandsInLine) {
   const Eigen::Vector2d eye(1.0, 0.0);
-  EXPECT_TRUE(standsBefore({4.0, 0.3}, {7.0, 0.0}, eye));
-  EXPECT_FALSE(standsBefore({4.0, 0.8}, {7.0, 0.0}, eye));   // beside
-  EXPECT_FALSE(standsBefore({7.0, 0.0}, {4.0, 0.3}, eye));   // behind
-  EXPECT_FALSE(standsBefore({6.8, 0.0}, {7.0, 0.0}, eye));   // the same place
-  EXPECT_FALSE(standsBefore({-2.0, 0.0}, {7.0, 0.0}, eye));  // the other way
+  EXPECT_TRUE(standsInLine({4.0, 0.3}, {7.0, 0.0}, eye));
+  EXPECT_TRUE(standsInLine({7.0, 0.0}, {4.0, 0.3}, eye));    // behind
+  EXPECT_FALSE(standsInLine({4.0, 0.8}, {7.0, 0.0}, eye));   // beside
+  EXPECT_FALSE(standsInLine({6.8, 0.0}, {7.0, 0.0}, eye));   // the same place
+  EXPECT_FALSE(standsInLine({-2.0, 0.0}, {7.0, 0.0}, eye));  // the other way
 }
 
 }  // namespace

@@ -139,11 +139,12 @@ void ObjectRegistry::lookAcross(const LevelView& view, const SE2& T_world_vehicl
     const ColumnSight sight = columnSight(view, feet[i]);
     if (sight == ColumnSight::kNotThere) ++pillars[i]->in_views.misses;
     if (sight != ColumnSight::kThere) continue;
-    // What a better known pillar shows says nothing of one behind it.
+    // What a much better known pillar shows says nothing of one before or behind it.
+    constexpr std::int64_t kMuch = 3;
     bool explained = false;
     for (std::size_t j = 0; j < pillars.size() && !explained; ++j) {
-      explained = pillars[j]->observations > pillars[i]->observations &&
-                  standsBefore(feet[j], feet[i], view.eye.head<2>());
+      explained = pillars[j]->observations > kMuch * pillars[i]->observations &&
+                  standsInLine(feet[j], feet[i], view.eye.head<2>());
     }
     if (!explained) ++pillars[i]->in_views.hits;
   }
