@@ -139,12 +139,15 @@ void ObjectRegistry::lookAcross(const LevelView& view, const SE2& T_world_vehicl
     const ColumnSight sight = columnSight(view, feet[i]);
     if (sight == ColumnSight::kNotThere) ++pillars[i]->in_views.misses;
     if (sight != ColumnSight::kThere) continue;
-    // What a much better known pillar shows says nothing of one before or behind it.
+    // What a better known pillar shows says nothing of one behind it, nor, if it is known much
+    // better, of one before it.
     constexpr std::int64_t kMuch = 3;
+    const Eigen::Vector2d eye = view.eye.head<2>();
     bool explained = false;
     for (std::size_t j = 0; j < pillars.size() && !explained; ++j) {
-      explained = pillars[j]->observations > kMuch * pillars[i]->observations &&
-                  standsInLine(feet[j], feet[i], view.eye.head<2>());
+      const bool before = (feet[j] - eye).norm() < (feet[i] - eye).norm();
+      explained = pillars[j]->observations > (before ? 1 : kMuch) * pillars[i]->observations &&
+                  standsInLine(feet[j], feet[i], eye);
     }
     if (!explained) ++pillars[i]->in_views.hits;
   }
