@@ -81,11 +81,42 @@ def coarser(rng, image):
     return np.asarray(small.resize((width, height), Image.BICUBIC)).astype(np.float32)
 
 
-def augment(rng, image, labels, floor_channel=None):
-    """floor_channel: the label of bare floor, whose colour and texture may change alone."""
+# What white paint becomes: blue and red of reserved slots, green of charging places, yellow.
+PAINTS = np.array([[0.20, 0.40, 0.85], [0.85, 0.25, 0.22], [0.25, 0.70, 0.40], [1.0, 0.75, 0.15]],
+                  np.float32)
+
+
+def repaint(rng, image, labels, floor, lines):
+    """The lines of some places in another colour, and of some faded towards the floor around them.
+    floor, lines: labels."""
+    shape = labels.shape
+    bare = (labels == floor).astype(np.float32)[..., None]
+    around = ndimage.gaussian_filter(image * bare, (4, 4, 0))
+    around = around / np.maximum(ndimage.gaussian_filter(bare, (4, 4, 0)), 1e-3)
+    mask = ndimage.gaussian_filter((labels == lines).astype(np.float32), 0.5)[..., None]
+    there = (smooth_field(rng, shape, 2) > rng.normal(-0.5, 0.7))[..., None]
+    paint = image
+    if rng.random() < 0.7:
+        grey = image.mean(2, keepdims=True)  # yellow lines too
+        tint = PAINTS[rng.choice(len(PAINTS), p=[0.55, 0.15, 0.15, 0.15])] ** rng.uniform(0.5, 1.0)
+        paint = grey * tint * np.exp(rng.normal(0, 0.15, 3)).astype(np.float32) * rng.uniform(0.7, 1.2)
+    if rng.random() < 0.6:
+        paint = around + rng.uniform(0.35, 1.0) * (paint - around)
+    changed = there & (mask > 0.5)
+    contrast = np.abs(paint - around).max(2, keepdims=True)
+    if not changed.any() or np.median(contrast[changed]) < 10.0:  # nobody would see these lines
+        return image
+    return np.where(there, image * (1 - mask) + paint * mask, image)
+
+
+def augment(rng, image, labels, floor_channel=None, line_channel=None):
+    """floor_channel: the label of bare floor, whose colour and texture may change alone;
+    line_channel: that of slot lines, whose paint may."""
     image = image.astype(np.float32)
     shape = labels.shape
     black = image.sum(2, keepdims=True) < 1.0
+    if line_channel is not None and rng.random() < 0.3:
+        image = repaint(rng, image, labels, floor_channel, line_channel)
     if rng.random() < 0.3:  # nearly as it was drawn
         image = image * np.exp(rng.normal(0, 0.15)) + rng.normal(0, 2, shape + (1,))
         return np.where(black, 0, np.clip(image, 0, 255)).astype(np.uint8)

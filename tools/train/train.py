@@ -35,7 +35,9 @@ def is_validation(garage):
 
 def make_batch(samples, rng, batch, size, network):
     images, labels = [], []
-    floor = NETWORKS[network]["classes"].index("floor") if network == "bev" else None
+    classes = NETWORKS[network]["classes"]
+    floor, lines = (classes.index(name) if network == "bev" else None
+                    for name in ("floor", "slot_line"))
     for _ in range(batch):
         index, centre = samples.pick(rng, size[0])
         if network == "raw":
@@ -46,7 +48,7 @@ def make_batch(samples, rng, batch, size, network):
             straight = rng.random() < 0.6
         image, label = cut(samples.images[index], samples.labels[index], np.asarray(centre), size,
                            rng, straight)
-        images.append(augment(rng, image, label, floor))
+        images.append(augment(rng, image, label, floor, lines))
         labels.append(label)
     return np.stack(images), np.stack(labels)
 
