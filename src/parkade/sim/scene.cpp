@@ -19,4 +19,18 @@ FloorSample FloorSurface::mean(const float* x, const float* y, int count, float 
   return sum;
 }
 
+void FloorSurface::means(const FloorBlock& block, FloorLooks& out) const {
+  for (int i = 0; i < block.count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const auto first = static_cast<std::size_t>(block.first[at]);
+    const FloorSample look = mean(&block.x[first], &block.y[first],
+                                  block.first[at + 1] - block.first[at], block.footprint[at]);
+    out.red[at] = look.albedo.x();
+    out.green[at] = look.albedo.y();
+    out.blue[at] = look.albedo.z();
+    out.specular[at] = look.specular;
+    out.roughness[at] = look.roughness;
+  }
+}
+
 }  // namespace parkade::sim

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -81,6 +82,27 @@ struct FloorSample {
   SemanticClass label = SemanticClass::kFloor;
 };
 
+/// Groups of neighbouring places on the floor, asked for together.
+struct FloorBlock {
+  static constexpr int kGroups = 16;
+  static constexpr int kPoints = 16;  ///< of a group, at most
+  int count = 0;                      ///< groups, at least 1
+  /// Group i has the points from first[i] to first[i + 1], at least one.
+  std::array<int, kGroups + 1> first{};
+  alignas(64) std::array<float, kGroups> footprint;
+  std::array<float, kGroups * kPoints> x;
+  std::array<float, kGroups * kPoints> y;
+};
+
+/// What the floor looks like in each group of a FloorBlock.
+struct FloorLooks {
+  alignas(64) std::array<float, FloorBlock::kGroups> red;
+  std::array<float, FloorBlock::kGroups> green;
+  std::array<float, FloorBlock::kGroups> blue;
+  std::array<float, FloorBlock::kGroups> specular;
+  std::array<float, FloorBlock::kGroups> roughness;
+};
+
 /// Floor texture with all paint, wear, stains, tyre marks. Thread-safe and fast: called per ray.
 class FloorSurface {
  public:
@@ -91,6 +113,8 @@ class FloorSurface {
   /// label is of no use.
   [[nodiscard]] virtual FloorSample mean(const float* x, const float* y, int count,
                                          float footprint) const;
+  /// mean() of every group of a block.
+  virtual void means(const FloorBlock& block, FloorLooks& out) const;
 };
 
 struct Scene {

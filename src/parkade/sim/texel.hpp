@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <bit>
 #include <cstdint>
-#include <cstring>
 
 #if defined(__SSE2__)
 #include <emmintrin.h>
@@ -52,16 +51,17 @@ inline Eigen::Vector4f texelOf(const std::uint16_t* values) {
           static_cast<float>(values[2]), static_cast<float>(values[3])};
 #endif
 }
-inline Eigen::Vector4f texelOf(const std::int8_t* values) {
+/// Four values of 8 bits with sign, the first lowest, as floats.
+inline Eigen::Vector4f texelOf(std::uint32_t packed) {
 #if defined(__SSE2__)
-  std::int32_t packed = 0;
-  std::memcpy(&packed, values, sizeof(packed));
-  const __m128i raw = _mm_cvtsi32_si128(packed);
+  const __m128i raw = _mm_cvtsi32_si128(static_cast<int>(packed));
   const __m128i words = _mm_unpacklo_epi8(raw, raw);
   return vectorOf(_mm_cvtepi32_ps(_mm_srai_epi32(_mm_unpacklo_epi16(words, words), 24)));
 #else
-  return {static_cast<float>(values[0]), static_cast<float>(values[1]),
-          static_cast<float>(values[2]), static_cast<float>(values[3])};
+  const auto value = [&](unsigned shift) {
+    return static_cast<float>(static_cast<std::int8_t>(packed >> shift & 0xffU));
+  };
+  return {value(0), value(8), value(16), value(24)};
 #endif
 }
 

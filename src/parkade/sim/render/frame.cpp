@@ -19,11 +19,20 @@ constexpr float kFaintest = 0.02F;  // mirror images weaker than this are not tr
 constexpr int kBlock = 4;           // pixels a side
 constexpr float kFaint = 0.06F;  // with one sample a pixel, floors that mirror less send fewer rays
 
-/// What a pixel mirrors.
-struct MirrorSource {
-  Surface surface;
-  Eigen::Vector3f direction = Eigen::Vector3f::UnitZ();
-  float weight = 0.0F;  ///< reflectance times the share of the pixel
+/// A tile on its way from samples to pixels.
+struct TileWork {
+  std::vector<SampleGroup> groups;
+  std::vector<Surface> surfaces;  ///< of the groups
+  /// The pixels in blocks: sixteen rays that follow each other then run alike.
+  struct Pixel {
+    int x = 0;
+    int y = 0;
+    int end = 0;                                    ///< of its groups
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();  ///< of samples that hit nothing
+  };
+  std::vector<Pixel> pixels;
+  std::array<std::vector<MirrorRay>, kMirrorPlaces> floor;
+  std::vector<MirrorRay> other;
 };
 
 class FrameTracer {
@@ -39,9 +48,12 @@ class FrameTracer {
 
  private:
   [[nodiscard]] const Eigen::Vector3f& eye() const { return rays_.eye(); }
-  /// The pixel without mirror images; main: the surface whose image shows best, weight: how well.
-  Eigen::Vector3f shadePixel(const SurfaceHit* hits, const Eigen::Vector3f* directions,
-                             float spread, MirrorSource& main) const;
+  /// Samples on the same surface are shaded as one.
+  void addGroups(const SurfaceHit* hits, const Eigen::Vector3f* directions, TileWork::Pixel& pixel,
+                 std::vector<SampleGroup>& groups) const;
+  /// The pixel without mirror images; adds its mirror ray, if it needs one.
+  void finishPixel(const TileWork::Pixel& pixel, int first_group, TileWork& work, Radiance& out,
+                   ReflectionBuffer* mirror) const;
   void traceMirrors(int tile, const std::vector<MirrorRay>& floor,
                     const std::vector<MirrorRay>& other, Radiance& out,
                     ReflectionBuffer& mirror) const;
@@ -52,26 +64,28 @@ class FrameTracer {
   const int samples_;
 };
 
-Eigen::Vector3f FrameTracer::shadePixel(const SurfaceHit* hits, const Eigen::Vector3f* directions,
-                                        float spread, MirrorSource& main) const {
+void FrameTracer::addGroups(const SurfaceHit* hits, const Eigen::Vector3f* directions,
+                            TileWork::Pixel& pixel, std::vector<SampleGroup>& groups) const {
   const Shader& shader = *setup_.shader;
   const Moment& moment = *setup_.moment;
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  const float spread = table_.spread(pixel.x, pixel.y);
   unsigned done = 0;
   for (int i = 0; i < samples_; ++i) {
     if ((done >> static_cast<unsigned>(i) & 1U) != 0U || hits[i].t < 0.0F) {
       continue;
     }
     if (hits[i].triangle == kNoTriangle) {
-      sum += setup_.open_above ? Eigen::Vector3f(Eigen::Vector3f::Zero())
-                               : shader.missed(eye(), directions[i]);
+      if (!setup_.open_above) {
+        pixel.sum += shader.missed(eye(), directions[i]);
+      }
       continue;
     }
-    // Samples on the same surface are shaded as one.
-    std::array<const SurfaceHit*, kMaxSamples> group{&hits[i]};
-    std::array<const Eigen::Vector3f*, kMaxSamples> rays{&directions[i]};
-    int count = 1;
-    const auto material = shader.materialIndex(hits[i], moment);
+    SampleGroup& group = groups.emplace_back();
+    group.hits = hits;
+    group.directions = directions;
+    group.eye = &eye();
+    group.spread = spread;
+    group.members[0] = static_cast<std::uint8_t>(i);
     const Eigen::Vector3f& n = hits[i].geometric_normal;
     for (int j = i + 1; j < samples_; ++j) {
       if (hits[j].triangle == kNoTriangle || hits[j].object != hits[i].object) {
@@ -80,80 +94,97 @@ Eigen::Vector3f FrameTracer::shadePixel(const SurfaceHit* hits, const Eigen::Vec
       if (hits[j].triangle != hits[i].triangle) {
         const Eigen::Vector3f& m = hits[j].geometric_normal;
         const float dot = n.dot(m);
-        if (shader.materialIndex(hits[j], moment) != material ||
+        if (shader.materialIndex(hits[j], moment) != shader.materialIndex(hits[i], moment) ||
             dot * dot < 0.97F * n.squaredNorm() * m.squaredNorm()) {
           continue;
         }
       }
       done |= 1U << static_cast<unsigned>(j);
-      group[static_cast<std::size_t>(count)] = &hits[j];
-      rays[static_cast<std::size_t>(count)] = &directions[j];
-      ++count;
-    }
-    Surface surface;
-    shader.shade(group.data(), rays.data(), count, eye(), spread, samples_, moment, surface);
-    sum += static_cast<float>(count) * surface.radiance;
-    const float cosine = -rays[0]->dot(surface.normal);
-    const float weight = mirrorReflectance(surface.specular, surface.roughness, cosine) *
-                         static_cast<float>(count) / static_cast<float>(samples_);
-    if (weight > main.weight &&
-        (surface.is_floor || (weight > kFaintest && surface.roughness < kSharp))) {
-      main = {surface, *rays[0], weight};
+      group.members[group.count++] = static_cast<std::uint8_t>(j);
     }
   }
-  return sum / static_cast<float>(samples_);
+}
+
+void FrameTracer::finishPixel(const TileWork::Pixel& pixel, int first_group, TileWork& work,
+                              Radiance& out, ReflectionBuffer* mirror) const {
+  const std::size_t index = static_cast<std::size_t>(pixel.y) * out.width + pixel.x;
+  Eigen::Vector3f sum = pixel.sum;
+  const Surface* main = nullptr;  // whose image shows best
+  float best = 0.0F;
+  const Eigen::Vector3f* direction = nullptr;
+  for (int i = first_group; i < pixel.end; ++i) {
+    const SampleGroup& group = work.groups[static_cast<std::size_t>(i)];
+    const Surface& surface = work.surfaces[static_cast<std::size_t>(i)];
+    sum += static_cast<float>(group.count) * surface.radiance;
+    const float cosine = -group.direction(0).dot(surface.normal);
+    const float weight = mirrorReflectance(surface.specular, surface.roughness, cosine) *
+                         static_cast<float>(group.count) / static_cast<float>(samples_);
+    if (weight > best && (surface.is_floor || (weight > kFaintest && surface.roughness < kSharp))) {
+      main = &surface;
+      best = weight;
+      direction = &group.direction(0);
+    }
+  }
+  out.pixels[index] = sum / static_cast<float>(samples_);
+  if (main == nullptr || mirror == nullptr) {
+    return;
+  }
+  if (!main->is_floor) {
+    MirrorRay& ray = work.other.emplace_back();
+    ray.pixel = static_cast<std::uint32_t>(index);
+    makeMirrorRay(*main, *direction, best, MirrorDensity::kQuarter, 0, ray);
+    return;
+  }
+  mirror->weights[index] = best;
+  const MirrorDensity density =
+      samples_ == 1 && best < kFaint ? MirrorDensity::kEighth : MirrorDensity::kQuarter;
+  const int place = mirrorPlace(density, pixel.x, pixel.y);
+  if (place >= 0) {
+    MirrorRay& ray = work.floor[static_cast<std::size_t>(place)].emplace_back();
+    ray.pixel = static_cast<std::uint32_t>(mirror->slot(pixel.x, pixel.y));
+    makeMirrorRay(*main, *direction, best, density, place, ray);
+  }
 }
 
 void FrameTracer::shadeTile(int tile, const TileSamples& in, Radiance& out,
                             ReflectionBuffer* mirror) const {
   const int left = tile % table_.tilesX() * kTile;
   const int top = tile / table_.tilesX() * kTile;
-  thread_local std::array<std::vector<MirrorRay>, kMirrorPlaces> floor;
-  thread_local std::vector<MirrorRay> other;
-  for (std::vector<MirrorRay>& rays : floor) {
+  thread_local TileWork work;
+  work.groups.clear();
+  work.pixels.clear();
+  for (std::vector<MirrorRay>& rays : work.floor) {
     rays.clear();
   }
-  other.clear();
-  // In blocks: sixteen rays that follow each other then run alike.
+  work.other.clear();
   for (int i = 0; i < kTilePixels; ++i) {
     const int block = i / (kBlock * kBlock);
     const int in_x = block % (kTile / kBlock) * kBlock + i % kBlock;
     const int in_y = block / (kTile / kBlock) * kBlock + i / kBlock % kBlock;
-    const int x = left + in_x;
-    const int y = top + in_y;
-    if (x >= out.width || y >= out.height) {
+    if (left + in_x >= out.width || top + in_y >= out.height) {
       continue;
     }
+    TileWork::Pixel& pixel = work.pixels.emplace_back();
+    pixel.x = left + in_x;
+    pixel.y = top + in_y;
     const int first = (in_y * kTile + in_x) * samples_;
-    const std::size_t pixel = static_cast<std::size_t>(y) * out.width + x;
-    MirrorSource main;
-    out.pixels[pixel] =
-        shadePixel(in.hits.data() + first, in.directions.data() + first, table_.spread(x, y), main);
-    if (main.weight <= 0.0F || mirror == nullptr) {
-      continue;
-    }
-    if (!main.surface.is_floor) {
-      other.push_back(
-          makeMirrorRay(main.surface, main.direction, main.weight, MirrorDensity::kQuarter, 0));
-      other.back().pixel = static_cast<std::uint32_t>(pixel);
-      continue;
-    }
-    mirror->weights[pixel] = main.weight;
-    const MirrorDensity density =
-        samples_ == 1 && main.weight < kFaint ? MirrorDensity::kEighth : MirrorDensity::kQuarter;
-    const int place = mirrorPlace(density, x, y);
-    if (place >= 0) {
-      std::vector<MirrorRay>& rays = floor[static_cast<std::size_t>(place)];
-      rays.push_back(makeMirrorRay(main.surface, main.direction, main.weight, density, place));
-      rays.back().pixel = static_cast<std::uint32_t>(mirror->slot(x, y));
-    }
+    addGroups(in.hits.data() + first, in.directions.data() + first, pixel, work.groups);
+    pixel.end = static_cast<int>(work.groups.size());
+  }
+  work.surfaces.resize(work.groups.size());
+  setup_.shader->shade(work.groups.data(), static_cast<int>(work.groups.size()), samples_,
+                       *setup_.moment, work.surfaces.data());
+  int first_group = 0;
+  for (const TileWork::Pixel& pixel : work.pixels) {
+    finishPixel(pixel, first_group, work, out, mirror);
+    first_group = pixel.end;
   }
   if (mirror != nullptr) {
     // Rays of one place of the pattern run alike: side by side they cost half.
-    for (std::size_t place = 1; place < floor.size(); ++place) {
-      floor[0].insert(floor[0].end(), floor[place].begin(), floor[place].end());
+    for (std::size_t place = 1; place < work.floor.size(); ++place) {
+      work.floor[0].insert(work.floor[0].end(), work.floor[place].begin(), work.floor[place].end());
     }
-    traceMirrors(tile, floor[0], other, out, *mirror);
+    traceMirrors(tile, work.floor[0], work.other, out, *mirror);
   }
 }
 

@@ -3,6 +3,7 @@
 // Pictures from above: the bird's-eye truth and the overview of a garage.
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "parkade/core/check.hpp"
@@ -83,15 +84,25 @@ OrthoImages Renderer::renderOrtho(const SE3& T_world_vehicle, int size_px, doubl
         rays.set(k, eyes[k], down, kFar);
       }
       traceBoth(tracer_, now->scene.get(), rays, true);
+      std::array<SurfaceHit, kPacket> hits;
+      std::array<SampleGroup, kPacket> groups;
+      std::array<Surface, kPacket> surfaces;
+      int count = 0;
       for (int k = 0; k < lanes; ++k) {
-        const SurfaceHit hit = hitOf(tracer_, rays, k);
+        SurfaceHit& hit = hits[static_cast<std::size_t>(k)];
+        hit = hitOf(tracer_, rays, k);
+        if (hit.triangle != kNoTriangle) {
+          groups[static_cast<std::size_t>(count++)] = {&hit, &down, &eyes[k], step / hit.t};
+        }
+      }
+      shader_.shade(groups.data(), count, 1, *now, surfaces.data());
+      std::size_t next = 0;
+      for (int k = 0; k < lanes; ++k) {
+        const SurfaceHit& hit = hits[static_cast<std::size_t>(k)];
         if (hit.triangle == kNoTriangle) {
           continue;
         }
-        const SurfaceHit* hits = &hit;
-        const Eigen::Vector3f* direction = &down;
-        Surface surface;
-        shader_.shade(&hits, &direction, 1, eyes[k], step / hit.t, 1, *now, surface);
+        const Surface& surface = surfaces[next++];
         const Eigen::Vector3f p = eyes[k] + hit.t * down;
         SemanticClass label = shader_.labelOf(hit, p, *now);
         if (surface.is_floor) {

@@ -77,9 +77,8 @@ int mirrorPlace(MirrorDensity density, int x, int y) {
   return place < raysOf(density) ? place : -1;
 }
 
-MirrorRay makeMirrorRay(const Surface& surface, const Eigen::Vector3f& direction, float weight,
-                        MirrorDensity density, int place) {
-  MirrorRay ray;
+void makeMirrorRay(const Surface& surface, const Eigen::Vector3f& direction, float weight,
+                   MirrorDensity density, int place, MirrorRay& ray) {
   ray.place = static_cast<std::uint8_t>(place);
   ray.weight = weight;
   ray.from_floor = surface.is_floor;
@@ -107,7 +106,6 @@ MirrorRay makeMirrorRay(const Surface& surface, const Eigen::Vector3f& direction
     ray.lobe_roughness = std::max(surface.roughness, kCoatBlur);
   }
   ray.origin = surface.position + 0.002F * surface.normal;
-  return ray;
 }
 
 namespace {
@@ -136,6 +134,19 @@ void traceRays(const FrameSetup& setup, RTCScene moving, float near_limit, float
     }
   }
   const float lamps_height = setup.shader->lamps().height() - kLampRoom;
+  thread_local std::vector<SampleGroup> groups;
+  thread_local std::vector<Surface> surfaces;
+  groups.clear();
+  for (int k = 0; k < count; ++k) {
+    const SurfaceHit& hit = hits[static_cast<std::size_t>(k)];
+    if (hit.triangle != kNoTriangle) {
+      groups.push_back({&hit, &rays[k].direction, &rays[k].origin, spread});
+    }
+  }
+  surfaces.resize(groups.size());
+  setup.shader->shade(groups.data(), static_cast<int>(groups.size()), 1, *setup.moment,
+                      surfaces.data());
+  std::size_t next = 0;
   for (int k = 0; k < count; ++k) {
     const MirrorRay& ray = rays[k];
     const SurfaceHit& hit = hits[static_cast<std::size_t>(k)];
@@ -143,10 +154,7 @@ void traceRays(const FrameSetup& setup, RTCScene moving, float near_limit, float
       use(ray, setup.shader->missed(ray.origin, ray.direction));
       continue;
     }
-    const SurfaceHit* one = &hit;
-    const Eigen::Vector3f* direction = &ray.direction;
-    Surface surface;
-    setup.shader->shade(&one, &direction, 1, ray.origin, spread, 1, *setup.moment, surface);
+    Surface& surface = surfaces[next++];
     if (hit.t * ray.direction.z() > lamps_height - ray.origin.z()) {
       surface.radiance += setup.shader->lamps().glow(ray.origin, ray.lobe_direction,
                                                      ray.lobe_cosine, ray.lobe_roughness);

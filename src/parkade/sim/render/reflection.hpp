@@ -52,11 +52,11 @@ inline constexpr int kMirrorPlaces = 4;
 /// The place of a pixel in the order of those that send a floor mirror ray, or -1.
 int mirrorPlace(MirrorDensity density, int x, int y);
 
-/// The mirror ray of a surface. On floors its direction is spread over the glossy lobe by the place
-/// in a pattern that repeats every 4 x 4 pixels: the mean over any such block is an integral over
-/// the lobe.
-MirrorRay makeMirrorRay(const Surface& surface, const Eigen::Vector3f& direction, float weight,
-                        MirrorDensity density, int place);
+/// The mirror ray of a surface, all but its pixel. On floors its direction is spread over the
+/// glossy lobe by the place in a pattern that repeats every 4 x 4 pixels: the mean over any such
+/// block is an integral over the lobe.
+void makeMirrorRay(const Surface& surface, const Eigen::Vector3f& direction, float weight,
+                   MirrorDensity density, int place, MirrorRay& ray);
 
 /// Traces mirror rays of floors into the buffer. moving is what they may meet of the moving
 /// objects, or null. Rays of one place of the pattern run alike and should follow each other.

@@ -10,19 +10,7 @@ namespace parkade::sim {
 namespace {
 
 constexpr float kInvPi = std::numbers::inv_pi_v<float>;
-constexpr int kMaxTaps = 4;
-constexpr int kMaxPoints = 4 * kMaxTaps;  // of one pixel
-constexpr float kSoftness = 2.0F;   // diameter of a sample's footprint over the spacing of samples
 constexpr float kDullFrom = 0.75F;  // roughness above which no mirror image is left
-
-/// Of light in which a flickering lamp has a share (of 65535).
-float flickerFactor(std::uint16_t lamp, std::uint16_t share, const Moment& moment) {
-  if (lamp == kNoLamp) {
-    return 1.0F;
-  }
-  const float brightness = moment.lamp_brightness[lamp];
-  return 1.0F + (brightness - 1.0F) * static_cast<float>(share) * (1.0F / 65535.0F);
-}
 
 }  // namespace
 
@@ -52,23 +40,12 @@ Eigen::Vector3f Shader::missed(const Eigen::Vector3f& origin,
   return through ? sky_ : background_;
 }
 
-Eigen::Vector3f Shader::floorLux(float x, float y, const Moment& moment) const {
-  std::array<std::uint32_t, 4> cells;
-  std::array<float, 4> weights;
-  light_.floor_grid.bilinear(x, y, cells, weights);
-  Eigen::Vector3f lux = Eigen::Vector3f::Zero();
-  if (moment.lamp_brightness.empty()) {
-    for (std::size_t i = 0; i < 4; ++i) {
-      lux += weights[i] * light_.floor[cells[i]].lux;
-    }
-  } else {
-    for (std::size_t i = 0; i < 4; ++i) {
-      const BakedPoint& point = light_.floor[cells[i]];
-      lux +=
-          weights[i] * flickerFactor(point.flicker_lamp, point.flicker_share, moment) * point.lux;
-    }
+float Shader::flickerFactor(std::uint16_t lamp, std::uint16_t share, const Moment& moment) {
+  if (lamp == kNoLamp) {
+    return 1.0F;
   }
-  return lux;
+  const float brightness = moment.lamp_brightness[lamp];
+  return 1.0F + (brightness - 1.0F) * static_cast<float>(share) * (1.0F / 65535.0F);
 }
 
 void Shader::surfaceAt(const SurfaceHit& hit, const Moment& moment, Eigen::Vector3f& normal,
@@ -109,28 +86,31 @@ Shader::TexturePlace Shader::texturePlaceAt(const SurfaceHit& hit, const Moment&
           t.texels_per_metre};
 }
 
-Eigen::Vector3f Shader::textureAt(const SurfaceHit* const* hits, int count,
-                                  const MipTexture& texture, const TexturePlace& first,
-                                  float spread, const Moment& moment) const {
-  const bool one_triangle = std::all_of(
-      hits, hits + count, [&](const SurfaceHit* h) { return h->triangle == hits[0]->triangle; });
-  const float texels = spread * hits[0]->t * first.texels_per_metre;
+Eigen::Vector3f Shader::textureAt(const SampleGroup& group, const MipTexture& texture,
+                                  const TexturePlace& first, float spread,
+                                  const Moment& moment) const {
+  bool one_triangle = true;
+  for (int i = 1; i < group.count; ++i) {
+    one_triangle = one_triangle && group.hit(i).triangle == group.hit(0).triangle;
+  }
+  const float texels = spread * group.hit(0).t * first.texels_per_metre;
   constexpr float kMagnified = 0.4F;
-  if (count == 1 || (one_triangle && texels < kMagnified)) {
+  if (group.count == 1 || (one_triangle && texels < kMagnified)) {
     // Within one texel the mean of the samples is the sample at their mean.
     Eigen::Vector2f middle = first.uv;
-    for (int i = 1; i < count; ++i) {
-      middle += texturePlaceAt(*hits[i], moment).uv;
+    for (int i = 1; i < group.count; ++i) {
+      middle += texturePlaceAt(group.hit(i), moment).uv;
     }
-    middle /= static_cast<float>(count);
+    middle /= static_cast<float>(group.count);
     return texture.sample(middle.x(), middle.y(), texels);
   }
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  for (int i = 0; i < count; ++i) {
-    const TexturePlace place = i == 0 ? first : texturePlaceAt(*hits[i], moment);
-    sum += texture.sample(place.uv.x(), place.uv.y(), spread * hits[i]->t * place.texels_per_metre);
+  for (int i = 0; i < group.count; ++i) {
+    const SurfaceHit& hit = group.hit(i);
+    const TexturePlace place = i == 0 ? first : texturePlaceAt(hit, moment);
+    sum += texture.sample(place.uv.x(), place.uv.y(), spread * hit.t * place.texels_per_metre);
   }
-  return sum / static_cast<float>(count);
+  return sum / static_cast<float>(group.count);
 }
 
 float Shader::lampBrightness(const Eigen::Vector3f& p, const Moment& moment) const {
@@ -153,69 +133,17 @@ float Shader::lampBrightness(const Eigen::Vector3f& p, const Moment& moment) con
   return brightness;
 }
 
-void Shader::shadeFloor(const SurfaceHit* const* hits, const Eigen::Vector3f* const* directions,
-                        int count, const Eigen::Vector3f& eye, float spread, int samples,
-                        const Moment& moment, Surface& out) const {
-  // The footprint of a sample is an ellipse, longer along the ray by 1 / cosine: taps along it keep
-  // the paint sharp across while they average along. They fill the gap to the next sample evenly,
-  // which cancels the beat between paint and pixels. A lone sample needs more of them than one of
-  // four, which the others complement.
-  const Eigen::Vector3f& d = *directions[0];
-  const float cosine = std::max(std::abs(d.dot(out.normal)), 0.02F);
-  const float gap = samples > 1 ? 0.3F : 0.6F;
-  const int taps = std::min(kMaxTaps, 1 + static_cast<int>(gap / cosine));
-  const float pitch = spread * hits[0]->t / cosine;
-  const float footprint = kSoftness * pitch * std::sqrt(cosine / static_cast<float>(taps));
-  const float level = std::sqrt(std::max(d.x() * d.x() + d.y() * d.y(), 1e-12F));
-  const float step = pitch / (static_cast<float>(taps) * level);
-  const float step_x = step * d.x();
-  const float step_y = step * d.y();
-  const float start = -0.5F * static_cast<float>(taps - 1);
-  Eigen::Vector3f middle = Eigen::Vector3f::Zero();
-  std::array<float, kMaxPoints> xs;
-  std::array<float, kMaxPoints> ys;
-  int points = 0;
-  for (int i = 0; i < count; ++i) {
-    const Eigen::Vector3f p = eye + hits[i]->t * *directions[i];
-    middle += p;
-    for (int k = 0; k < taps; ++k) {
-      const float along = start + static_cast<float>(k);
-      xs[static_cast<std::size_t>(points)] = p.x() + along * step_x;
-      ys[static_cast<std::size_t>(points)] = p.y() + along * step_y;
-      ++points;
-    }
-  }
-  const FloorSample look = scene_.floor->mean(xs.data(), ys.data(), points, footprint);
-  out.position = middle / static_cast<float>(count);
-  out.specular = look.specular;
-  out.roughness = look.roughness;
-  out.is_floor = true;
-  Eigen::Vector3f lux = floorLux(out.position.x(), out.position.y(), moment);
-  if (!moment.objects.empty()) {
-    lux *= moment.floorShade(out.position.x(), out.position.y());
-  }
-  if (!moment.beams.empty()) {
-    lux += moment.beamLux(out.position, out.normal);
-  }
-  out.radiance = look.albedo.cwiseProduct(lux) * kInvPi;
-}
-
-void Shader::shade(const SurfaceHit* const* hits, const Eigen::Vector3f* const* directions,
-                   int count, const Eigen::Vector3f& eye, float spread, int samples,
-                   const Moment& moment, Surface& out) const {
-  const SurfaceHit& hit = *hits[0];
-  const ShadeMaterial& material = materials_[materialIndex(hit, moment)];
+void Shader::shadeOne(const SampleGroup& group, const ShadeMaterial& material, const Moment& moment,
+                      Surface& out) const {
+  const SurfaceHit& hit = group.hit(0);
+  const Eigen::Vector3f& direction = group.direction(0);
   Eigen::Vector3f lux;
   surfaceAt(hit, moment, out.normal, lux);
   out.normal.normalize();
-  if (out.normal.dot(*directions[0]) > 0.0F) {
+  if (out.normal.dot(direction) > 0.0F) {
     out.normal = -out.normal;
   }
-  if (material.is_floor) {
-    shadeFloor(hits, directions, count, eye, spread, samples, moment, out);
-    return;
-  }
-  out.position = eye + hit.t * *directions[0];
+  out.position = *group.eye + hit.t * direction;
   out.specular = material.specular;
   out.roughness = material.roughness;
   out.is_floor = false;
@@ -227,9 +155,9 @@ void Shader::shade(const SurfaceHit* const* hits, const Eigen::Vector3f* const* 
   if (material.texture != nullptr) {
     const TexturePlace first = texturePlaceAt(hit, moment);
     if (first.texels_per_metre > 0.0F) {
-      const float cosine = std::max(std::abs(directions[0]->dot(out.normal)), 0.1F);
+      const float cosine = std::max(std::abs(direction.dot(out.normal)), 0.1F);
       const Eigen::Vector3f sum =
-          textureAt(hits, count, *material.texture, first, spread / std::sqrt(cosine), moment);
+          textureAt(group, *material.texture, first, group.spread / std::sqrt(cosine), moment);
       albedo = albedo.cwiseProduct(sum);
       emission = emission.cwiseProduct(sum);
     }
@@ -237,6 +165,27 @@ void Shader::shade(const SurfaceHit* const* hits, const Eigen::Vector3f* const* 
   out.radiance = albedo.cwiseProduct(lux) * kInvPi + emission;
   if (!moment.lamp_brightness.empty() && material.emission.x() > 0.0F) {
     out.radiance *= lampBrightness(out.position, moment);
+  }
+}
+
+void Shader::shade(const SampleGroup* groups, int count, int samples, const Moment& moment,
+                   Surface* out) const {
+  FloorGroups floor;
+  for (int i = 0; i < count; ++i) {
+    const ShadeMaterial& material = materials_[materialIndex(groups[i].hit(0), moment)];
+    if (!material.is_floor) {
+      shadeOne(groups[i], material, moment, out[i]);
+      continue;
+    }
+    floor.groups[static_cast<std::size_t>(floor.count)] = &groups[i];
+    floor.out[static_cast<std::size_t>(floor.count)] = &out[i];
+    if (++floor.count == FloorBlock::kGroups) {
+      shadeFloor(floor, samples, moment);
+      floor.count = 0;
+    }
+  }
+  if (floor.count > 0) {
+    shadeFloor(floor, samples, moment);
   }
 }
 

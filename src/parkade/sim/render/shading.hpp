@@ -72,6 +72,25 @@ struct Surface {
   bool is_floor = false;
 };
 
+/// Samples of a pixel at most.
+inline constexpr int kMaxSamples = 4;
+
+/// Samples of one pixel that hit one surface (same material and object, like normals).
+struct SampleGroup {
+  const SurfaceHit* hits = nullptr;                 ///< of the pixel
+  const Eigen::Vector3f* directions = nullptr;      ///< of the pixel
+  const Eigen::Vector3f* eye = nullptr;             ///< where the rays come from
+  float spread = 0.0F;                              ///< rad between neighbouring samples
+  std::array<std::uint8_t, kMaxSamples> members{};  ///< which of the pixel's samples
+  std::uint8_t count = 1;                           ///< of members
+  [[nodiscard]] const SurfaceHit& hit(int i) const {
+    return hits[members[static_cast<std::size_t>(i)]];
+  }
+  [[nodiscard]] const Eigen::Vector3f& direction(int i) const {
+    return directions[members[static_cast<std::size_t>(i)]];
+  }
+};
+
 /// Reflectance of a clear coat seen at an angle: Schlick's formula, weakened by roughness at
 /// grazing angles; none for dull surfaces.
 float mirrorReflectance(float specular, float roughness, float cosine);
@@ -104,12 +123,10 @@ class Shader {
     }
   }
 
-  /// Shades samples of one pixel that hit one surface (same material and object, like normals) as
-  /// one: light at the first hit, colour as the mean over all. spread is the angle between
-  /// neighbouring samples, samples how many the pixel has.
-  void shade(const SurfaceHit* const* hits, const Eigen::Vector3f* const* directions, int count,
-             const Eigen::Vector3f& eye, float spread, int samples, const Moment& moment,
-             Surface& out) const;
+  /// Shades groups, each as one: light at the first hit, colour as the mean over all. samples:
+  /// how many a pixel has. One surface per group.
+  void shade(const SampleGroup* groups, int count, int samples, const Moment& moment,
+             Surface* out) const;
 
   /// Class of a hit at the exact place.
   [[nodiscard]] SemanticClass labelOf(const SurfaceHit& hit, const Eigen::Vector3f& position,
@@ -129,7 +146,6 @@ class Shader {
     return hit.object < 0 ? mesh_
                           : moment.objects[static_cast<std::size_t>(hit.object)].shape->mesh;
   }
-  [[nodiscard]] Eigen::Vector3f floorLux(float x, float y, const Moment& moment) const;
   /// Normal and illuminance at a hit, not unit and not turned towards the viewer.
   void surfaceAt(const SurfaceHit& hit, const Moment& moment, Eigen::Vector3f& normal,
                  Eigen::Vector3f& lux) const;
@@ -140,12 +156,24 @@ class Shader {
   [[nodiscard]] TexturePlace texturePlaceAt(const SurfaceHit& hit, const Moment& moment) const;
   /// The mean of a texture over hits of one object, each filtered over spread times its distance;
   /// first: the place of the first.
-  [[nodiscard]] Eigen::Vector3f textureAt(const SurfaceHit* const* hits, int count,
-                                          const MipTexture& texture, const TexturePlace& first,
-                                          float spread, const Moment& moment) const;
-  void shadeFloor(const SurfaceHit* const* hits, const Eigen::Vector3f* const* directions,
-                  int count, const Eigen::Vector3f& eye, float spread, int samples,
-                  const Moment& moment, Surface& out) const;
+  [[nodiscard]] Eigen::Vector3f textureAt(const SampleGroup& group, const MipTexture& texture,
+                                          const TexturePlace& first, float spread,
+                                          const Moment& moment) const;
+  void shadeOne(const SampleGroup& group, const ShadeMaterial& material, const Moment& moment,
+                Surface& out) const;
+
+  /// Groups on the floor that are shaded together (floor_shading.cpp).
+  struct FloorGroups {
+    int count = 0;
+    std::array<const SampleGroup*, FloorBlock::kGroups> groups;
+    std::array<Surface*, FloorBlock::kGroups> out;
+  };
+  void shadeFloor(const FloorGroups& floor, int samples, const Moment& moment) const;
+  /// Light of the floor's map at sixteen places.
+  void floorLux(const float* x, const float* y, int count, const Moment& moment,
+                Eigen::Vector3f* lux) const;
+  [[nodiscard]] static float flickerFactor(std::uint16_t lamp, std::uint16_t share,
+                                           const Moment& moment);
   [[nodiscard]] float lampBrightness(const Eigen::Vector3f& p, const Moment& moment) const;
 
   const Scene& scene_;

@@ -8,6 +8,8 @@ set(RENDER_SOURCES
     render/bake_probes.cpp
     render/direct_light.cpp
     render/embree.cpp
+    render/floor_rays_kernel.cpp
+    render/floor_shading.cpp
     render/frame.cpp
     render/lamp_map.cpp
     render/light_bake.cpp

@@ -11,8 +11,6 @@
 namespace parkade::sim {
 
 inline constexpr int kTilePixels = RayTable::kTile * RayTable::kTile;
-/// Samples of a pixel at most.
-inline constexpr int kMaxSamples = 4;
 
 /// The samples of a tile: [pixel * samples + sample].
 struct TileSamples {

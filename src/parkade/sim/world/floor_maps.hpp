@@ -11,6 +11,7 @@
 namespace parkade::sim {
 
 inline constexpr float kFloorMapCell = 0.04F;  ///< m: of the maps over the whole floor
+inline constexpr float kFineTexel = 0.004F;    ///< m: grain of the floor's surface
 inline constexpr float kCloudTexel = 0.05F;    ///< m: clouds of wear and damp
 
 /// What a value of makeFloorMaps means.

@@ -8,6 +8,7 @@
 
 #include "parkade/core/check.hpp"
 #include "parkade/core/random.hpp"
+#include "parkade/sim/world/floor_kernel.hpp"
 #include "parkade/sim/world/floor_maps.hpp"
 #include "parkade/sim/world/noise_texture.hpp"
 #include "parkade/sim/world/paint_layer.hpp"
@@ -15,7 +16,6 @@
 namespace parkade::sim {
 namespace {
 
-constexpr float kFineTexel = 0.004F;  // m: grain of the floor's surface
 constexpr int kNoiseSize = 512;
 
 class PaintedFloor final : public FloorSurface {
@@ -33,6 +33,7 @@ class PaintedFloor final : public FloorSurface {
         maps_(makeFloorMaps(min, max, look, clouds_)),
         paint_(min, max) {
     addPaints(paints);
+    fillGround();
   }
 
   [[nodiscard]] FloorSample sample(float x, float y, float footprint) const override {
@@ -83,6 +84,46 @@ class PaintedFloor final : public FloorSurface {
     return out;
   }
 
+  void means(const FloorBlock& block, FloorLooks& out) const override {
+    constexpr std::size_t kGroups = FloorBlock::kGroups;
+    alignas(64) std::array<float, kGroups> x{};
+    alignas(64) std::array<float, kGroups> y{};
+    alignas(64) std::array<float, kGroups> wide{};
+    const auto count = static_cast<std::size_t>(block.count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto first = static_cast<std::size_t>(block.first[i]);
+      const auto end = static_cast<std::size_t>(block.first[i + 1]);
+      x[i] = block.x[first];
+      y[i] = block.y[first];
+      for (std::size_t p = first + 1; p < end; ++p) {
+        x[i] += block.x[p];
+        y[i] += block.y[p];
+      }
+      const float n = static_cast<float>(end - first);
+      x[i] /= n;
+      y[i] /= n;
+      wide[i] = block.footprint[i] * (0.5F * (1.0F + std::sqrt(n)));
+    }
+    std::fill(x.begin() + block.count, x.end(), x[0]);
+    std::fill(y.begin() + block.count, y.end(), y[0]);
+    std::fill(wide.begin() + block.count, wide.end(), wide[0]);
+    alignas(64) std::array<float, kGroups> paint_shade;
+    lookAtGround(ground_, x.data(), y.data(), wide.data(), out, paint_shade.data());
+    std::array<PaintSample, kGroups> paints;
+    paint_.means(block, paints);
+    for (std::size_t i = 0; i < count; ++i) {
+      const PaintSample& paint = paints[i];
+      if (paint.coverage <= 0.0F) continue;
+      const float covered = std::min(1.0F, paint.coverage);
+      out.red[i] = (1.0F - covered) * out.red[i] + paint_shade[i] * paint.albedo.x();
+      out.green[i] = (1.0F - covered) * out.green[i] + paint_shade[i] * paint.albedo.y();
+      out.blue[i] = (1.0F - covered) * out.blue[i] + paint_shade[i] * paint.albedo.z();
+      const Look& look = looks_[paint.paint];
+      out.specular[i] += covered * (look.specular - out.specular[i]);
+      out.roughness[i] += covered * (look.roughness - out.roughness[i]);
+    }
+  }
+
  private:
   struct Look {
     SemanticClass label = SemanticClass::kFloor;
@@ -102,6 +143,25 @@ class PaintedFloor final : public FloorSurface {
     const int below = static_cast<int>(std::floor(zone + 1e-3F));
     const float part = std::clamp(zone - static_cast<float>(below), 0.0F, 1.0F);
     return colour(below) + part * (colour(below + 1) - colour(below));
+  }
+
+  void fillGround() {
+    ground_.fine = fine_.view();
+    ground_.maps = maps_.view();
+    ground_.origin_x = origin_.x();
+    ground_.origin_y = origin_.y();
+    ground_.grain = grain_;
+    ground_.filth = filth_;
+    ground_.specular = look_.specular;
+    ground_.roughness = look_.roughness;
+    ground_.zones = std::min(static_cast<int>(look_.zones.size()), GroundTable::kMaxZones);
+    for (int i = 0; i <= ground_.zones; ++i) {
+      const Eigen::Vector3f& albedo =
+          i == 0 ? look_.albedo : look_.zones[static_cast<std::size_t>(i) - 1].albedo;
+      ground_.red[i] = albedo.x();
+      ground_.green[i] = albedo.y();
+      ground_.blue[i] = albedo.z();
+    }
   }
 
   void addPaints(const std::vector<FloorPaint>& paints) {
@@ -157,6 +217,7 @@ class PaintedFloor final : public FloorSurface {
   QuadTexture maps_;
   PaintLayer paint_;
   std::vector<Look> looks_;
+  GroundTable ground_;  ///< for floor_kernel.hpp, of the members above
 };
 
 }  // namespace

@@ -117,6 +117,47 @@ TEST(FloorSurface, FarAwayItIsTheMean) {
   EXPECT_LT(mean, 0.7F);
 }
 
+// Places asked for together, on paint, across the seams of its tiles and outside the floor.
+TEST(FloorSurface, LooksTheSameInBlocks) {
+  FloorLook look;
+  look.zones.push_back({{{0, 3}, {6, 3}, {6, 5}, {0, 5}}, {0.1F, 0.4F, 0.1F}});
+  look.joints.push_back({{1.0, 0.0}, {1.0, 5.0}});
+  const auto floor = floorWithLine(look, 0.5);
+  Random rng(3);
+  int painted = 0;
+  for (int i = 0; i < 400; ++i) {
+    FloorBlock block;
+    block.count = 1 + i % FloorBlock::kGroups;
+    int end = 0;
+    for (std::size_t g = 0; g < static_cast<std::size_t>(block.count); ++g) {
+      block.first[g] = end;
+      block.footprint[g] = static_cast<float>(std::exp(rng.uniform(-6.0, 0.5)));
+      const double x = rng.uniform(-0.3, 6.3);
+      const double y = g % 2 == 0 ? rng.uniform(0.95, 1.35) : rng.uniform(-0.3, 5.3);
+      const int points = g % 3 == 0 ? FloorBlock::kPoints : 1 + static_cast<int>(g % 4);
+      for (int k = 0; k < points; ++k, ++end) {
+        block.x[static_cast<std::size_t>(end)] = static_cast<float>(x + 0.01 * k);
+        block.y[static_cast<std::size_t>(end)] = static_cast<float>(y + 0.003 * k);
+      }
+    }
+    block.first[static_cast<std::size_t>(block.count)] = end;
+    FloorLooks looks;
+    floor->means(block, looks);
+    for (std::size_t g = 0; g < static_cast<std::size_t>(block.count); ++g) {
+      const auto first = static_cast<std::size_t>(block.first[g]);
+      const FloorSample one = floor->mean(&block.x[first], &block.y[first],
+                                          block.first[g + 1] - block.first[g], block.footprint[g]);
+      EXPECT_NEAR(looks.red[g], one.albedo.x(), 1e-5F);
+      EXPECT_NEAR(looks.green[g], one.albedo.y(), 1e-5F);
+      EXPECT_NEAR(looks.blue[g], one.albedo.z(), 1e-5F);
+      EXPECT_NEAR(looks.specular[g], one.specular, 1e-5F);
+      EXPECT_NEAR(looks.roughness[g], one.roughness, 1e-5F);
+      painted += one.albedo.x() > 0.5F ? 1 : 0;
+    }
+  }
+  EXPECT_GT(painted, 100);
+}
+
 TEST(FloorSurface, WornPaintIsThinnerAndBroken) {
   const auto fresh = floorWithLine(plainLook(), 0.0);
   const auto worn = floorWithLine(plainLook(), 0.9);

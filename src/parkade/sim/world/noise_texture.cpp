@@ -24,26 +24,34 @@ GreyTexture::GreyTexture(const std::vector<float>& values, int width, int height
     : repeats_(repeats) {
   PARKADE_CHECK(values.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
                 "{} values for {} x {}", values.size(), width, height);
-  Level base{width, height, {}};
-  base.texels.reserve(values.size());
+  levels_.push_back({width, height});
+  offsets_.push_back(0);
+  texels_.reserve(values.size() + values.size() / 2);
   for (const float value : values) {
-    base.texels.push_back(
+    texels_.push_back(
         static_cast<std::int8_t>(std::lround(kScale * std::clamp(value, -1.0F, 1.0F))));
   }
-  levels_.push_back(std::move(base));
   while (levels_.back().width >= 4 && levels_.back().height >= 4) {
-    const Level& fine = levels_.back();
-    Level coarse{fine.width / 2, fine.height / 2, {}};
+    const Level fine = levels_.back();
+    const auto from = static_cast<std::size_t>(offsets_.back());
+    const Level coarse{fine.width / 2, fine.height / 2};
+    levels_.push_back(coarse);
+    offsets_.push_back(static_cast<std::int32_t>(texels_.size()));
     for (int y = 0; y < coarse.height; ++y) {
       for (int x = 0; x < coarse.width; ++x) {
-        const std::int8_t* row = &fine.texels[static_cast<std::size_t>(2 * y * fine.width + 2 * x)];
+        const std::int8_t* row =
+            &texels_[from + static_cast<std::size_t>(2 * y * fine.width + 2 * x)];
         const int sum = row[0] + row[1] + row[fine.width] + row[fine.width + 1];
-        coarse.texels.push_back(
-            static_cast<std::int8_t>(std::lround(0.25F * static_cast<float>(sum))));
+        texels_.push_back(static_cast<std::int8_t>(std::lround(0.25F * static_cast<float>(sum))));
       }
     }
-    levels_.push_back(std::move(coarse));
   }
+}
+
+GreyView GreyTexture::view() const {
+  PARKADE_CHECK(repeats_ && levels_[0].width == levels_[0].height, "{} x {} texels",
+                levels_[0].width, levels_[0].height);
+  return {texels_.data(), offsets_.data(), static_cast<int>(levels_.size()), levels_[0].width};
 }
 
 float GreyTexture::sample(float u, float v, float footprint) const {
@@ -59,10 +67,12 @@ float GreyTexture::sample(float u, float v, float footprint) const {
   };
   const int ax = place(x0, level.width);
   const int bx = place(x0 + 1, level.width);
-  const std::int8_t* row_a = &level.texels[static_cast<std::size_t>(place(y0, level.height)) *
-                                           static_cast<std::size_t>(level.width)];
-  const std::int8_t* row_b = &level.texels[static_cast<std::size_t>(place(y0 + 1, level.height)) *
-                                           static_cast<std::size_t>(level.width)];
+  const std::int8_t* texels =
+      &texels_[static_cast<std::size_t>(offsets_[static_cast<std::size_t>(index)])];
+  const std::int8_t* row_a = texels + static_cast<std::size_t>(place(y0, level.height)) *
+                                          static_cast<std::size_t>(level.width);
+  const std::int8_t* row_b = texels + static_cast<std::size_t>(place(y0 + 1, level.height)) *
+                                          static_cast<std::size_t>(level.width);
   const float fx = x - static_cast<float>(x0);
   const float fy = y - static_cast<float>(y0);
   const float a = static_cast<float>(row_a[ax]) * (1.0F - fx) + static_cast<float>(row_a[bx]) * fx;

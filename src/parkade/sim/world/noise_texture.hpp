@@ -7,6 +7,14 @@
 
 namespace parkade::sim {
 
+/// A repeating GreyTexture as plain arrays; level i has size >> i texels a side.
+struct GreyView {
+  const std::int8_t* texels = nullptr;
+  const std::int32_t* offsets = nullptr;  ///< of each level in texels
+  int levels = 0;
+  int size = 0;
+};
+
 /// A grey texture with mip-maps, row by row, values in -1 to 1 stored in bytes. Tiles (repeats) or
 /// ends at its border.
 class GreyTexture {
@@ -16,14 +24,17 @@ class GreyTexture {
 
   /// Value at texture coordinates in texels of level 0, filtered over a footprint in texels.
   [[nodiscard]] float sample(float u, float v, float footprint) const;
+  /// Of a square texture that repeats; valid as long as the texture.
+  [[nodiscard]] GreyView view() const;
 
  private:
   struct Level {
     int width = 0;
     int height = 0;
-    std::vector<std::int8_t> texels;
   };
   std::vector<Level> levels_;
+  std::vector<std::int32_t> offsets_;  ///< of each level in texels_
+  std::vector<std::int8_t> texels_;
   bool repeats_;
 };
 

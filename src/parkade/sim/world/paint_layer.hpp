@@ -3,10 +3,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <vector>
+
+#include "parkade/sim/scene.hpp"
 
 namespace parkade::sim {
 
@@ -23,8 +25,13 @@ struct PaintSample {
 class PaintLayer {
  public:
   static constexpr float kCell = 0.01F;  ///< m
-  static constexpr int kTile = 128;
+  static constexpr int kTileBits = 7;
+  static constexpr int kTile = 1 << kTileBits;
   static constexpr int kLevels = 6;  ///< cells of 1 to 32 cm
+  /// Where a level begins in the cells of a tile.
+  static constexpr int firstCell(int level) {
+    return (4 * kTile * kTile - (4 * kTile * kTile >> 2 * level)) / 3;
+  }
 
   PaintLayer(const Eigen::Vector2d& min, const Eigen::Vector2d& max);
 
@@ -38,25 +45,34 @@ class PaintLayer {
 
   /// The mean over count places, each averaged over the footprint.
   [[nodiscard]] PaintSample mean(const float* x, const float* y, int count, float footprint) const;
+  /// mean() of every group of a block.
+  void means(const FloorBlock& block, std::array<PaintSample, FloorBlock::kGroups>& out) const;
 
  private:
   struct Cell {
     std::uint8_t coverage = 0;
     std::uint8_t paint = 0;
   };
-  struct Tile {
-    std::vector<Cell> levels[kLevels];
-  };
+  using Tile = std::vector<Cell>;  ///< while painting: of level 0
   /// Lays a share of paint over a cell.
   static void cover(Cell& cell, float share, std::uint8_t id);
-  void add(float x, float y, int level, PaintSample& sum) const;
-  [[nodiscard]] const Tile* tileAt(int tile_x, int tile_y) const;
+  void addCell(std::uint16_t cell, float weight, PaintSample& sum) const;
+  /// The cells of several tiles around a point; cell indices count over all tiles of a level.
+  void addSeam(int ix, int iy, float fx, float fy, int level, PaintSample& sum) const;
+  static void makeCoarser(const std::uint16_t* fine, std::uint16_t* coarse, int size);
+  static void takeMean(int count, PaintSample& sum);
+  /// First cell of a tile, 0 where there is no paint.
+  [[nodiscard]] std::int32_t baseOf(int tile_x, int tile_y) const;
 
   Eigen::Vector2d origin_;
   Eigen::Vector2f corner_;  ///< the origin
   int tiles_x_ = 0;
   int tiles_y_ = 0;
-  std::vector<std::unique_ptr<Tile>> tiles_;
+  std::vector<Tile> painted_;  ///< until finish()
+  // Coverage in the low byte, paint in the high one. The first tile has no paint; one base more
+  // than there are tiles leads to it, too.
+  std::vector<std::uint16_t> cells_;
+  std::vector<std::int32_t> bases_;
   std::vector<Eigen::Vector3f> albedo_;
 };
 

@@ -14,59 +14,71 @@ constexpr float kScale = 127.0F;
 }  // namespace
 
 QuadTexture::QuadTexture(const std::array<std::vector<float>, 4>& channels, int width, int height) {
-  Level base{width, height, {}};
-  base.texels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  for (std::size_t c = 0; c < 4; ++c) {
-    PARKADE_CHECK(channels[c].size() == base.texels.size(), "{} values for {} x {}",
-                  channels[c].size(), width, height);
-    for (std::size_t i = 0; i < base.texels.size(); ++i) {
-      const float value = std::clamp(channels[c][i], -1.0F, 1.0F);
-      base.texels[i][c] = static_cast<std::int8_t>(std::lround(kScale * value));
-    }
+  const std::size_t size = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  for (const std::vector<float>& channel : channels) {
+    PARKADE_CHECK(channel.size() == size, "{} values for {} x {}", channel.size(), width, height);
   }
-  levels_.push_back(std::move(base));
-  while (levels_.back().width >= 4 && levels_.back().height >= 4) {
-    const Level& fine = levels_.back();
-    Level coarse{fine.width / 2, fine.height / 2, {}};
-    coarse.texels.reserve(static_cast<std::size_t>(coarse.width) *
-                          static_cast<std::size_t>(coarse.height));
-    for (int y = 0; y < coarse.height; ++y) {
-      for (int x = 0; x < coarse.width; ++x) {
-        const Texel* row = &fine.texels[static_cast<std::size_t>(2 * y * fine.width + 2 * x)];
-        Texel texel{};
-        for (std::size_t c = 0; c < 4; ++c) {
-          const int sum = row[0][c] + row[1][c] + row[fine.width][c] + row[fine.width + 1][c];
-          texel[c] = static_cast<std::int8_t>(std::lround(0.25F * static_cast<float>(sum)));
-        }
-        coarse.texels.push_back(texel);
+  const auto pack = [&](const auto& value_of) {
+    std::uint32_t texel = 0;
+    for (unsigned c = 0; c < 4; ++c) {
+      texel |= static_cast<std::uint32_t>(static_cast<std::uint8_t>(value_of(c))) << 8U * c;
+    }
+    texels_.push_back(texel);
+  };
+  texels_.reserve(size + size / 2);
+  for (std::size_t i = 0; i < size; ++i) {
+    pack([&](unsigned c) {
+      return static_cast<std::int8_t>(
+          std::lround(kScale * std::clamp(channels[c][i], -1.0F, 1.0F)));
+    });
+  }
+  offsets_.push_back(0);
+  widths_.push_back(width);
+  heights_.push_back(height);
+  while (widths_.back() >= 4 && heights_.back() >= 4) {
+    const std::size_t from = static_cast<std::size_t>(offsets_.back());
+    const int fine = widths_.back();
+    offsets_.push_back(static_cast<std::int32_t>(texels_.size()));
+    widths_.push_back(fine / 2);
+    heights_.push_back(heights_.back() / 2);
+    for (int y = 0; y < heights_.back(); ++y) {
+      for (int x = 0; x < widths_.back(); ++x) {
+        const std::size_t at = from + static_cast<std::size_t>(2 * y * fine + 2 * x);
+        pack([&](unsigned c) {
+          const int sum = valueOf(texels_[at], c) + valueOf(texels_[at + 1], c) +
+                          valueOf(texels_[at + static_cast<std::size_t>(fine)], c) +
+                          valueOf(texels_[at + static_cast<std::size_t>(fine) + 1], c);
+          return static_cast<std::int8_t>(std::lround(0.25F * static_cast<float>(sum)));
+        });
       }
     }
-    levels_.push_back(std::move(coarse));
   }
 }
 
 Eigen::Vector4f QuadTexture::sample(float u, float v, float footprint) const {
-  const int index = std::min(mipLevelFor(footprint), static_cast<int>(levels_.size()) - 1);
+  const auto index = static_cast<std::size_t>(
+      std::min(mipLevelFor(footprint), static_cast<int>(widths_.size()) - 1));
   const float scale = 1.0F / static_cast<float>(1 << index);
-  const Level& level = levels_[static_cast<std::size_t>(index)];
+  const int width = widths_[index];
+  const int height = heights_[index];
   const float x = u * scale - 0.5F;
   const float y = v * scale - 0.5F;
   const int x0 = floorToInt(x);
   const int y0 = floorToInt(y);
-  const int ax = std::clamp(x0, 0, level.width - 1);
-  const int bx = std::clamp(x0 + 1, 0, level.width - 1);
-  const Texel* row_a =
-      level.texels.data() + static_cast<std::size_t>(std::clamp(y0, 0, level.height - 1)) *
-                                static_cast<std::size_t>(level.width);
-  const Texel* row_b =
-      level.texels.data() + static_cast<std::size_t>(std::clamp(y0 + 1, 0, level.height - 1)) *
-                                static_cast<std::size_t>(level.width);
+  const int ax = std::clamp(x0, 0, width - 1);
+  const int bx = std::clamp(x0 + 1, 0, width - 1);
+  const std::uint32_t* texels = &texels_[static_cast<std::size_t>(offsets_[index])];
+  const auto at = [&](int place_x, int place_y) {
+    const std::uint32_t texel =
+        texels[static_cast<std::size_t>(std::clamp(place_y, 0, height - 1)) *
+                   static_cast<std::size_t>(width) +
+               static_cast<std::size_t>(place_x)];
+    return texelOf(texel);
+  };
   const float fx = x - static_cast<float>(x0);
   const float fy = y - static_cast<float>(y0);
-  const Eigen::Vector4f a =
-      (1.0F - fx) * texelOf(row_a[ax].data()) + fx * texelOf(row_a[bx].data());
-  const Eigen::Vector4f b =
-      (1.0F - fx) * texelOf(row_b[ax].data()) + fx * texelOf(row_b[bx].data());
+  const Eigen::Vector4f a = (1.0F - fx) * at(ax, y0) + fx * at(bx, y0);
+  const Eigen::Vector4f b = (1.0F - fx) * at(ax, y0 + 1) + fx * at(bx, y0 + 1);
   return (1.0F / kScale) * ((1.0F - fy) * a + fy * b);
 }
 

@@ -9,6 +9,15 @@
 
 namespace parkade::sim {
 
+/// A QuadTexture as plain arrays: four values of 8 bits per texel, the first lowest.
+struct QuadView {
+  const std::uint32_t* texels = nullptr;
+  const std::int32_t* offsets = nullptr;  ///< of each level in texels
+  const std::int32_t* widths = nullptr;
+  const std::int32_t* heights = nullptr;
+  int levels = 0;
+};
+
 /// A texture of four values (-1 to 1, stored in bytes) with mip-maps, row by row, that ends at its
 /// border. One look-up reads all four.
 class QuadTexture {
@@ -18,15 +27,21 @@ class QuadTexture {
 
   /// Values at texture coordinates in texels of level 0, filtered over a footprint in texels.
   [[nodiscard]] Eigen::Vector4f sample(float u, float v, float footprint) const;
+  /// Valid as long as the texture.
+  [[nodiscard]] QuadView view() const {
+    return {texels_.data(), offsets_.data(), widths_.data(), heights_.data(),
+            static_cast<int>(widths_.size())};
+  }
 
  private:
-  using Texel = std::array<std::int8_t, 4>;
-  struct Level {
-    int width = 0;
-    int height = 0;
-    std::vector<Texel> texels;
-  };
-  std::vector<Level> levels_;
+  /// Value of a channel in a texel.
+  static int valueOf(std::uint32_t texel, unsigned channel) {
+    return static_cast<std::int8_t>(texel >> (8U * channel) & 0xffU);
+  }
+  std::vector<std::uint32_t> texels_;
+  std::vector<std::int32_t> offsets_;  ///< per level
+  std::vector<std::int32_t> widths_;
+  std::vector<std::int32_t> heights_;
 };
 
 }  // namespace parkade::sim

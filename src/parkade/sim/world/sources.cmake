@@ -16,6 +16,7 @@ set(WORLD_SOURCES
     world/coverage.cpp
     world/fittings.cpp
     world/floor_build.cpp
+    world/floor_kernel.cpp
     world/floor_maps.cpp
     world/floor_surface.cpp
     world/garage_json_read.cpp
@@ -42,6 +43,9 @@ set(WORLD_SOURCES
     world/slot_paint.cpp
     world/stroke_font.cpp
     world/style.cpp)
+# Fused multiply-add would make pictures differ between instruction sets.
+set_source_files_properties(world/floor_kernel.cpp PROPERTIES
+                            COMPILE_OPTIONS "-ffp-contract=off;-fno-math-errno;-fno-trapping-math")
 set(WORLD_TESTS
     world/agents_test.cpp
     world/car_mesh_test.cpp
