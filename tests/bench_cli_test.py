@@ -63,6 +63,8 @@ class BenchErrorTest(unittest.TestCase):
             (["--out", self.out, "--routes", "test9"], 1, ["test9", "test1"]),
             (["--out", self.out, "--garages", "castle"], 1, ["castle", "random:N"]),
             (["--out", self.out, "--light", "bright"], 1, ["--light", "bright"]),
+            (["--out", self.out, "--occupancy", "60"], 1, ["--occupancy", "between 0 and 1"]),
+            (["--out", self.out, "--agents", "3"], 1, ["CARS:PEOPLE", "'3'"]),
             (["--out", self.out, "--cameras", "6"], 1, ["1..6"]),
             (["--out", self.out, "--variant", "fused"], 1, ["NAME="]),
             (["--out", self.out, "--variant", "vis=fused"], 1, ["'vis'"]),
@@ -191,6 +193,22 @@ class BenchTest(unittest.TestCase):
         rows = map_rows(again / "map.db")
         self.assertGreater(len(rows["object"]), 0)
         self.assertEqual(map_rows(first / "map.db"), rows)
+
+    def test_another_calibration_is_told_over_the_same_pictures(self):
+        other = self.imports.parent / "calibration"
+        result = bench(
+            "--out", other, "--routes", "test1", "--duration", SECONDS, "--fast", "--methods", "vis",
+            "--sequences", self.out / "sequences", "--calib-error", "0.5",
+        )  # fmt: skip
+        self.assertEqual(result.returncode, 0, result.stderr)
+        folder = other / "sequences" / "test1_calib0.5"
+        self.assertTrue((folder / "mav0" / "cam0" / "data").is_symlink())
+        drawn = self.out / "sequences" / "test1"
+        self.assertNotEqual((folder / "rig.yaml").read_text(), (drawn / "rig.yaml").read_text())
+        metrics = json.loads((other / "metrics.json").read_text(encoding="utf-8"))
+        errors = {run["condition"]: run["ape"]["rmse"] for run in metrics["runs"]}
+        self.assertEqual(set(errors), {"", "calibration off by 0.5 deg, 0.5 cm"})
+        self.assertNotEqual(*errors.values())
 
     def test_goes_on_where_it_stopped(self):
         pictures = list((self.out / "sequences").rglob("*.jpg"))

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "parkade/cli/bench_recording.hpp"
 #include "parkade/cli/bench_report.hpp"
 #include "parkade/cli/bench_runs.hpp"
 #include "parkade/cli/sim_record.hpp"
@@ -34,6 +35,7 @@ constexpr const char* kFooter =
     "  parkade bench --out DIR --quick                           a look: a few minutes\n"
     "  parkade bench --out DIR --garages random:10 --fast        ten garages of another kind\n"
     "  parkade bench --out DIR --routes test1 --light 10,50,200,1000 --methods fused\n"
+    "  parkade bench --out DIR --garages random:10 --fast --calib-error 0.1,0.3\n"
     "  parkade bench --out DIR --variant wide=fused,vio.window.keyframes=12\n"
     "  parkade bench --out DIR --import orb-slam3=TRAJECTORIES   judges TRAJECTORIES/test1.tum, "
     "...";
@@ -216,6 +218,13 @@ std::shared_ptr<PaperBenchOptions> addPaperBenchOptions(CLI::App& bench) {
       ->type_name("DIR");
   bench.add_option("--light", o->light, "Also at these mean lights on the floor, lux")
       ->type_name("LX,...");
+  bench
+      .add_option("--occupancy", o->occupancy, "Also with such shares of slots taken, as 0.2,0.95")
+      ->type_name("SHARE,...");
+  bench
+      .add_option("--agents", o->agents,
+                  "Also with so many moving cars and walking people, as 0:0,6:8")
+      ->type_name("CARS:PEOPLE,...");
   bench
       .add_option("--calib-error", o->calib_error,
                   "Also with cameras told wrong by this many degrees and centimetres")

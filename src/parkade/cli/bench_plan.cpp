@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <functional>
 #include <sstream>
 
 #include "parkade/cli/semantic_garages.hpp"
@@ -136,31 +138,94 @@ Status addOwn(const PaperBenchOptions& options, BenchPlan& plan) {
   return {};
 }
 
-// Drives of one garage and route, as it is and under the conditions that are swept.
+// Values of one swept condition: how each changes a drive and what it is then called.
+Status sweep(const std::string& option, const std::string& values, const BenchDrive& base,
+             const std::function<Status(double value, BenchDrive& drive)>& change,
+             std::vector<BenchDrive>& kinds) {
+  for (const std::string& text : split(values, ',')) {
+    const Result<double> value = number(option, text);
+    if (!value) return value.error();
+    BenchDrive drive = base;
+    if (Status changed = change(*value, drive); !changed) return changed;
+    kinds.push_back(std::move(drive));
+  }
+  return {};
+}
+
+Status sweepAgents(const std::string& values, const BenchDrive& base,
+                   std::vector<BenchDrive>& kinds) {
+  for (const std::string& text : split(values, ',')) {
+    const std::vector<std::string> pair = split(text, ':');
+    const Result<double> cars = number("--agents", pair.empty() ? "" : pair[0]);
+    const Result<double> people = number("--agents", pair.size() != 2 ? "" : pair[1]);
+    constexpr double kMost = 50.0;
+    const auto countable = [](double n) { return n >= 0.0 && n <= kMost && n == std::floor(n); };
+    if (!cars || !people || !countable(*cars) || !countable(*people)) {
+      return Error{fmt::format(
+          "bench: --agents: expected CARS:PEOPLE with commas between, as 0:0,6:8, found '{}'",
+          text)};
+    }
+    BenchDrive drive = base;
+    drive.spec.cars = static_cast<int>(*cars);
+    drive.spec.people = static_cast<int>(*people);
+    drive.condition = fmt::format("{:g} cars, {:g} people", *cars, *people);
+    drive.name += fmt::format("_agents{:g}-{:g}", *cars, *people);
+    kinds.push_back(std::move(drive));
+  }
+  return {};
+}
+
+// The drive as it is and under the conditions that are swept, one at a time.
+Status addConditions(const PaperBenchOptions& options, const BenchDrive& base,
+                     std::vector<BenchDrive>& kinds) {
+  Status status = sweep(
+      "--light", options.light, base,
+      [](double lux, BenchDrive& drive) -> Status {
+        drive.spec.lux = lux;
+        drive.condition = fmt::format("{:g} lux", lux);
+        drive.name += fmt::format("_lux{:g}", lux);
+        return {};
+      },
+      kinds);
+  if (!status) return status;
+  status = sweep(
+      "--occupancy", options.occupancy, base,
+      [](double share, BenchDrive& drive) -> Status {
+        if (share < 0.0 || share > 1.0) {
+          return Error{fmt::format("bench: --occupancy {:g}: a share lies between 0 and 1", share)};
+        }
+        drive.spec.occupancy = share;
+        drive.condition = fmt::format("{:g} % taken", 100.0 * share);
+        drive.name += fmt::format("_taken{:g}", share);
+        return {};
+      },
+      kinds);
+  if (status) status = sweepAgents(options.agents, base, kinds);
+  if (!status) return status;
+  return sweep(
+      "--calib-error", options.calib_error, base,
+      [&base](double error, BenchDrive& drive) -> Status {
+        drive.spec.calib_error_deg = error;
+        drive.spec.calib_error_cm = error;
+        drive.condition = fmt::format("calibration off by {0:g} deg, {0:g} cm", error);
+        drive.name += fmt::format("_calib{:g}", error);
+        drive.pictures_of = base.name;
+        return {};
+      },
+      kinds);
+}
+
+// Drives of one garage and route under every condition, with every seed.
 Status addDrives(const PaperBenchOptions& options, const BenchDrive& base, BenchPlan& plan) {
   std::vector<BenchDrive> kinds{base};
-  for (const std::string& text : split(options.light, ',')) {
-    const Result<double> lux = number("--light", text);
-    if (!lux) return lux.error();
-    kinds.push_back(base);
-    kinds.back().spec.lux = *lux;
-    kinds.back().condition = fmt::format("{:g} lux", *lux);
-    kinds.back().name += fmt::format("_lux{:g}", *lux);
-  }
-  for (const std::string& text : split(options.calib_error, ',')) {
-    const Result<double> error = number("--calib-error", text);
-    if (!error) return error.error();
-    kinds.push_back(base);
-    kinds.back().spec.calib_error_deg = *error;
-    kinds.back().spec.calib_error_cm = *error;
-    kinds.back().condition = fmt::format("calibration off by {0:g} deg, {0:g} cm", *error);
-    kinds.back().name += fmt::format("_calib{:g}", *error);
-  }
+  if (Status added = addConditions(options, base, kinds); !added) return added;
   for (const BenchDrive& kind : kinds) {
     for (int k = 0; k < options.seeds; ++k) {
       BenchDrive drive = kind;
       drive.spec.seed += k;
-      if (k > 0) drive.name += fmt::format("_seed{}", drive.spec.seed);
+      const std::string which = k > 0 ? fmt::format("_seed{}", drive.spec.seed) : "";
+      drive.name += which;
+      if (!drive.pictures_of.empty()) drive.pictures_of += which;
       drive.spec.fast = options.fast || options.quick;
       drive.spec.duration = options.duration_s;
       drive.spec.threads = options.threads;
@@ -174,7 +239,7 @@ Status addPaperGarage(const PaperBenchOptions& options, BenchPlan& plan) {
   for (const std::string& route : split(options.routes, ',')) {
     const Result<sim::SimSpec> spec = sim::defaultSpec("paper", route);
     if (!spec) return spec.error();
-    const Status added = addDrives(options, {route, "paper", route, "", *spec}, plan);
+    const Status added = addDrives(options, {route, "paper", route, "", *spec, ""}, plan);
     if (!added) return added;
   }
   return {};
@@ -189,7 +254,7 @@ Status addRandomGarages(const PaperBenchOptions& options, BenchPlan& plan) {
     spec->garage_seed = seed;
     const Status added = addDrives(
         options,
-        {fmt::format("random_{}", seed), fmt::format("random {}", seed), "random", "", *spec},
+        {fmt::format("random_{}", seed), fmt::format("random {}", seed), "random", "", *spec, ""},
         plan);
     if (!added) return added;
   }

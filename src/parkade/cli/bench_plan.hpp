@@ -22,6 +22,8 @@ struct PaperBenchOptions {
   std::vector<std::string> variants;  ///< NAME=METHOD,option=value,...
   std::vector<std::string> settings;  ///< option=value for every method
   std::string light;                  ///< lux, with commas
+  std::string occupancy;              ///< shares, with commas
+  std::string agents;                 ///< CARS:PEOPLE, with commas
   std::string calib_error;            ///< degrees, with commas; as many centimetres
   std::string cameras;                ///< "1..6"
   int seeds = 1;
@@ -39,6 +41,7 @@ struct BenchDrive {
   std::string route;
   std::string condition;
   sim::SimSpec spec;
+  std::string pictures_of;  ///< the drive that it differs from by the rig told alone; or empty
 };
 
 /// One way to work on it: a method with its options, or trajectories made elsewhere.

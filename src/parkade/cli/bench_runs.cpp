@@ -164,26 +164,6 @@ Result<std::string> camerasOf(const std::string& sequence, int count) {
 
 }  // namespace
 
-Result<std::string> provideSequence(const PaperBenchOptions& options, const BenchDrive& drive) {
-  if (!options.sequences.empty()) {
-    const std::string given = joinPath(options.sequences, drive.name);
-    if (inspectSequence(given).finished) return given;
-  }
-  const std::string folder = joinPath(joinPath(options.out, "sequences"), drive.name);
-  const std::string spec_path = joinPath(folder, "spec.yaml");
-  const bool same = textOf(spec_path) == specText(drive.spec);
-  if (same && inspectSequence(folder).finished) return folder;
-  const auto simulation = sim::Simulation::make(drive.spec);
-  if (!simulation) return simulation.error();
-  RecordOptions record;
-  record.out = folder;
-  record.resume = same;
-  record.force = !same;
-  const Status recorded = recordSequence(*simulation, record);
-  if (!recorded) return recorded.error();
-  return folder;
-}
-
 JudgedRun failedRun(const BenchDrive& drive, const BenchVariant& variant,
                     const std::string& reason) {
   JudgedRun run = emptyRun(drive, variant);

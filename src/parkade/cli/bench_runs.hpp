@@ -19,10 +19,6 @@ struct JudgedRun {
   bool kept = false;  ///< done by an earlier bench
 };
 
-/// Makes sure that the recording of a drive is there, whole: uses it, goes on with it, or draws it.
-/// Gives its folder.
-Result<std::string> provideSequence(const PaperBenchOptions& options, const BenchDrive& drive);
-
 /// Runs a variant on a recording, judges it and leaves OUT/runs/DRIVE/METHOD/bench.json, written
 /// last. One that is there already and was made with the same options by the same program is kept.
 /// Whatever goes wrong is a run that failed, with its reason.
