@@ -35,24 +35,19 @@ Eigen::Vector3f addPoints(const SampleGroup& group, const FloorRays& rays, int k
 
 }  // namespace
 
-void Shader::floorLux(const float* x, const float* y, int count, const Moment& moment,
-                      Eigen::Vector3f* lux) const {
-  const FloorGrid& grid = light_.floor_grid;
-  GridPlaces at;
-  placeInGrid({grid.min.x(), grid.min.y(), grid.cell, grid.nx, grid.ny}, x, y, at);
-  for (int k = 0; k < count; ++k) {
-    const BakedPoint* const upper = &light_.floor[static_cast<std::size_t>(at.cell[k])];
-    const BakedPoint* const lower = upper + grid.nx;
-    const std::array<const BakedPoint*, 4> points{upper, upper + 1, lower, lower + 1};
-    lux[k].setZero();
-    for (std::size_t i = 0; i < 4; ++i) {
-      float weight = at.weights[i][k];
-      if (!moment.lamp_brightness.empty()) {
-        weight *= flickerFactor(points[i]->flicker_lamp, points[i]->flicker_share, moment);
-      }
-      lux[k] += weight * points[i]->lux;
+Eigen::Vector3f Shader::floorLux(const GridPlaces& places, int k, const Moment& moment) const {
+  const BakedPoint* const upper = &light_.floor[static_cast<std::size_t>(places.cell[k])];
+  const BakedPoint* const lower = upper + light_.floor_grid.nx;
+  const std::array<const BakedPoint*, 4> points{upper, upper + 1, lower, lower + 1};
+  Eigen::Vector3f lux = Eigen::Vector3f::Zero();
+  for (std::size_t i = 0; i < 4; ++i) {
+    float weight = places.weights[i][k];
+    if (!moment.lamp_brightness.empty()) {
+      weight *= flickerFactor(points[i]->flicker_lamp, points[i]->flicker_share, moment);
     }
+    lux += weight * points[i]->lux;
   }
+  return lux;
 }
 
 void Shader::shadeFloor(const FloorGroups& floor, int samples, const Moment& moment) const {
@@ -107,23 +102,32 @@ void Shader::shadeFloor(const FloorGroups& floor, int samples, const Moment& mom
     x[k] = x[0];
     y[k] = y[0];
   }
+  const FloorGrid& grid = light_.floor_grid;
+  GridPlaces places;
+  placeInGrid({grid.min.x(), grid.min.y(), grid.cell, grid.nx, grid.ny}, x.data(), y.data(),
+              places);
+  for (int k = 0; k < floor.count; ++k) {
+    const BakedPoint* const upper = &light_.floor[static_cast<std::size_t>(places.cell[k])];
+    __builtin_prefetch(upper);
+    __builtin_prefetch(upper + grid.nx);
+  }
   FloorLooks looks;
   scene_.floor->means(block, looks);
 
   // 3. Light.
-  std::array<Eigen::Vector3f, kGroups> lux;
-  floorLux(x.data(), y.data(), floor.count, moment, lux.data());
   for (int k = 0; k < floor.count; ++k) {
     const auto at = static_cast<std::size_t>(k);
     Surface& out = *floor.out[at];
-    if (!moment.objects.empty()) {
-      lux[at] *= moment.floorShade(x[at], y[at]);
+    Eigen::Vector3f lux = floorLux(places, k, moment);
+    const unsigned reach = moment.reach_grid.at(x[at], y[at]);
+    if ((reach & ReachGrid::kShadow) != 0U) {
+      lux *= moment.floorShade(x[at], y[at]);
     }
-    if (!moment.beams.empty()) {
-      lux[at] += moment.beamLux(out.position, out.normal);
+    if ((reach & ReachGrid::kBeams) != 0U) {
+      lux += moment.beamLux(out.position, out.normal);
     }
     const Eigen::Vector3f albedo(looks.red[at], looks.green[at], looks.blue[at]);
-    out.radiance = albedo.cwiseProduct(lux[at]) * kInvPi;
+    out.radiance = albedo.cwiseProduct(lux) * kInvPi;
     out.specular = looks.specular[at];
     out.roughness = looks.roughness[at];
     out.is_floor = true;

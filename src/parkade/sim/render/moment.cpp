@@ -22,16 +22,29 @@ constexpr float kBeamEdge = 0.7F;        // cosine of the lobe's half angle
 constexpr float kBeamWedge = 0.95F;  // rad: the lobe's half angle on the plan, with room for tilt
 constexpr float kDarkest = 0.12F;    // light left below the middle of a car
 
-bool inCone(const Eigen::Vector3f& center, float radius, const Eigen::Vector3f& eye,
-            const Eigen::Vector3f& axis, float half_angle) {
-  const Eigen::Vector3f d = center - eye;
-  const float distance = d.norm();
-  if (distance <= radius) {
-    return true;
+/// A cone from an eye.
+struct SightCone {
+  Eigen::Vector3f eye;
+  Eigen::Vector3f axis;
+  float cosine;  // of the half angle
+  float sine;
+
+  /// Whether a sphere may show; now and then true where it only nearly does.
+  [[nodiscard]] bool meets(const Eigen::Vector3f& center, float radius) const {
+    const Eigen::Vector3f d = center - eye;
+    const float d2 = d.squaredNorm();
+    if (d2 <= radius * radius || cosine < -0.99F) {
+      return true;
+    }
+    // The half angle and the sphere's, added: cos(a + b) = cos a cos b - sin a sin b.
+    const float distance = std::sqrt(d2);
+    const float sphere_cosine = std::sqrt(d2 - radius * radius);  // times distance
+    if (cosine < 0.0F && -cosine * distance >= sphere_cosine) {
+      return true;  // together more than half a turn
+    }
+    return d.dot(axis) > cosine * sphere_cosine - sine * radius - 1e-4F * distance;
   }
-  const float wide = half_angle + std::asin(radius / distance);
-  return wide > 3.1F || d.dot(axis) > distance * std::cos(wide);
-}
+};
 
 /// Spheres around the cells of a half-metre grid that the mesh's triangles reach.
 std::vector<Eigen::Vector4f> partsOf(const RenderMesh& mesh, const Eigen::Vector3f& low) {
@@ -67,18 +80,20 @@ std::vector<Eigen::Vector4f> partsOf(const RenderMesh& mesh, const Eigen::Vector
 
 bool Moment::showsIn(const Eigen::Vector3f& eye, const Eigen::Vector3f& axis,
                      float half_angle) const {
+  const SightCone world{eye, axis, std::cos(half_angle), std::sin(half_angle)};
   for (const PlacedObject& object : objects) {
-    if (!inCone(object.center_world, object.shape->radius, eye, axis, half_angle)) {
+    if (!world.meets(object.center_world, object.shape->radius)) {
       continue;
     }
     // In the object's frame, against its parts.
     const Eigen::Matrix3f R_object_world = object.R_world_object.transpose();
-    const Eigen::Vector3f eye_object = R_object_world * (eye - object.p_world);
-    const Eigen::Vector3f axis_object = R_object_world * axis;
-    for (const Eigen::Vector4f& part : object.shape->parts) {
-      if (inCone(part.head<3>(), part.w(), eye_object, axis_object, half_angle)) {
-        return true;
-      }
+    const SightCone cone{R_object_world * (eye - object.p_world), R_object_world * axis,
+                         world.cosine, world.sine};
+    const auto& parts = object.shape->parts;
+    if (std::any_of(parts.begin(), parts.end(), [&](const Eigen::Vector4f& part) {
+          return cone.meets(part.head<3>(), part.w());
+        })) {
+      return true;
     }
   }
   return false;

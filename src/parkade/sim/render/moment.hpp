@@ -94,6 +94,10 @@ struct Moment {
                              float half_angle) const;
   /// How much of the floor's light at a place the objects leave.
   [[nodiscard]] float floorShade(float x, float y) const;
+  /// Whether head lamps may bring a surface any light.
+  [[nodiscard]] bool beamsReach(const Eigen::Vector3f& p) const {
+    return (reach_grid.at(p.x(), p.y()) & ReachGrid::kBeams) != 0;
+  }
   /// Lux that head lamps bring to a surface.
   [[nodiscard]] Eigen::Vector3f beamLux(const Eigen::Vector3f& p, const Eigen::Vector3f& n) const;
 };

@@ -52,6 +52,14 @@ class RayTable {
   [[nodiscard]] float spread(int x, int y) const {
     return spread_[static_cast<std::size_t>(y) * width_ + x];
   }
+  /// Fetches what spread() will read of a tile.
+  void prefetchSpread(int tile) const {
+    const int x = tile % tiles_x_ * kTile;
+    const int y = tile / tiles_x_ * kTile;
+    for (int row = y; row < y + kTile && row < height_; ++row) {
+      __builtin_prefetch(&spread_[static_cast<std::size_t>(row) * width_ + x]);
+    }
+  }
   /// Cosine of the angle between a pixel's ray and the optical axis; 0 without a ray.
   [[nodiscard]] const std::vector<float>& axisCosines() const { return axis_cosine_; }
 

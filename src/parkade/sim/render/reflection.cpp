@@ -129,7 +129,7 @@ void traceRays(const FrameSetup& setup, RTCScene moving, float near_limit, float
     traceBoth(*setup.tracer, moving, packet, true);
     for (int k = 0; k < lanes; ++k) {
       SurfaceHit& hit = hits[static_cast<std::size_t>(begin + k)];
-      hit = hitOf(*setup.tracer, packet, k);
+      readHit(*setup.tracer, packet, k, hit);
       setup.shader->prefetch(hit);
     }
   }

@@ -10,6 +10,7 @@ namespace parkade::sim {
 namespace {
 
 constexpr float kInvPi = std::numbers::inv_pi_v<float>;
+constexpr int kChunk = 256;         // groups sorted together
 constexpr float kDullFrom = 0.75F;  // roughness above which no mirror image is left
 
 }  // namespace
@@ -133,12 +134,12 @@ float Shader::lampBrightness(const Eigen::Vector3f& p, const Moment& moment) con
   return brightness;
 }
 
-void Shader::shadeOne(const SampleGroup& group, const ShadeMaterial& material, const Moment& moment,
-                      Surface& out) const {
+void Shader::lightUp(const SampleGroup& group, const Moment& moment, SolidGroup& solid) const {
+  const ShadeMaterial& material = *solid.material;
   const SurfaceHit& hit = group.hit(0);
   const Eigen::Vector3f& direction = group.direction(0);
-  Eigen::Vector3f lux;
-  surfaceAt(hit, moment, out.normal, lux);
+  Surface& out = *solid.out;
+  surfaceAt(hit, moment, out.normal, solid.lux);
   out.normal.normalize();
   if (out.normal.dot(direction) > 0.0F) {
     out.normal = -out.normal;
@@ -147,22 +148,41 @@ void Shader::shadeOne(const SampleGroup& group, const ShadeMaterial& material, c
   out.specular = material.specular;
   out.roughness = material.roughness;
   out.is_floor = false;
-  if (!moment.beams.empty()) {
-    lux += moment.beamLux(out.position, out.normal);
+  if (moment.beamsReach(out.position)) {
+    solid.lux += moment.beamLux(out.position, out.normal);
   }
+  solid.first.texels_per_metre = 0.0F;
+  solid.at_once = false;
+  if (material.texture == nullptr) {
+    return;
+  }
+  solid.first = texturePlaceAt(hit, moment);
+  if (solid.first.texels_per_metre <= 0.0F) {
+    return;
+  }
+  const float cosine = std::max(std::abs(direction.dot(out.normal)), 0.1F);
+  solid.spread = group.spread / std::sqrt(cosine);
+  if (group.count == 1) {
+    solid.at_once = true;
+    material.texture->find(solid.first.uv.x(), solid.first.uv.y(),
+                           solid.spread * hit.t * solid.first.texels_per_metre, solid.texels);
+    solid.texels.prefetch();
+  }
+}
+
+void Shader::paintSolid(const SolidGroup& solid, const Moment& moment) const {
+  const ShadeMaterial& material = *solid.material;
+  Surface& out = *solid.out;
   Eigen::Vector3f albedo = material.albedo;
   Eigen::Vector3f emission = material.emission;
-  if (material.texture != nullptr) {
-    const TexturePlace first = texturePlaceAt(hit, moment);
-    if (first.texels_per_metre > 0.0F) {
-      const float cosine = std::max(std::abs(direction.dot(out.normal)), 0.1F);
-      const Eigen::Vector3f sum =
-          textureAt(group, *material.texture, first, group.spread / std::sqrt(cosine), moment);
-      albedo = albedo.cwiseProduct(sum);
-      emission = emission.cwiseProduct(sum);
-    }
+  if (solid.first.texels_per_metre > 0.0F) {
+    const Eigen::Vector3f mean = solid.at_once ? MipTexture::read(solid.texels)
+                                               : textureAt(*solid.group, *material.texture,
+                                                           solid.first, solid.spread, moment);
+    albedo = albedo.cwiseProduct(mean);
+    emission = emission.cwiseProduct(mean);
   }
-  out.radiance = albedo.cwiseProduct(lux) * kInvPi + emission;
+  out.radiance = albedo.cwiseProduct(solid.lux) * kInvPi + emission;
   if (!moment.lamp_brightness.empty() && material.emission.x() > 0.0F) {
     out.radiance *= lampBrightness(out.position, moment);
   }
@@ -170,22 +190,48 @@ void Shader::shadeOne(const SampleGroup& group, const ShadeMaterial& material, c
 
 void Shader::shade(const SampleGroup* groups, int count, int samples, const Moment& moment,
                    Surface* out) const {
-  FloorGroups floor;
+  for (int begin = 0; begin < count; begin += kChunk) {
+    shadeChunk(groups + begin, std::min(kChunk, count - begin), samples, moment, out + begin);
+  }
+}
+
+void Shader::shadeChunk(const SampleGroup* groups, int count, int samples, const Moment& moment,
+                        Surface* out) const {
+  // Sorted by kind, without branches: groups of one kind take the same way through the code.
+  enum Kind : std::size_t { kFloor, kPlain, kTextured, kKinds };
+  std::array<std::array<std::uint16_t, kChunk>, kKinds> order;
+  std::array<std::size_t, kKinds> end{};
   for (int i = 0; i < count; ++i) {
     const ShadeMaterial& material = materials_[materialIndex(groups[i].hit(0), moment)];
-    if (!material.is_floor) {
-      shadeOne(groups[i], material, moment, out[i]);
-      continue;
-    }
-    floor.groups[static_cast<std::size_t>(floor.count)] = &groups[i];
-    floor.out[static_cast<std::size_t>(floor.count)] = &out[i];
-    if (++floor.count == FloorBlock::kGroups) {
-      shadeFloor(floor, samples, moment);
-      floor.count = 0;
-    }
+    const std::size_t solid = material.texture == nullptr ? kPlain : kTextured;
+    const std::size_t kind = material.is_floor ? kFloor : solid;
+    order[kind][end[kind]++] = static_cast<std::uint16_t>(i);
   }
-  if (floor.count > 0) {
+  FloorGroups floor;
+  for (std::size_t begin = 0; begin < end[kFloor]; begin += FloorBlock::kGroups) {
+    const std::size_t size = std::min<std::size_t>(FloorBlock::kGroups, end[kFloor] - begin);
+    floor.count = static_cast<int>(size);
+    for (std::size_t k = 0; k < size; ++k) {
+      floor.groups[k] = &groups[order[kFloor][begin + k]];
+      floor.out[k] = &out[order[kFloor][begin + k]];
+    }
     shadeFloor(floor, samples, moment);
+  }
+  std::array<SolidGroup, FloorBlock::kGroups> solids;
+  for (const Kind kind : {kPlain, kTextured}) {
+    for (std::size_t begin = 0; begin < end[kind]; begin += solids.size()) {
+      const std::size_t size = std::min(solids.size(), end[kind] - begin);
+      for (std::size_t k = 0; k < size; ++k) {
+        SolidGroup& solid = solids[k];
+        solid.group = &groups[order[kind][begin + k]];
+        solid.out = &out[order[kind][begin + k]];
+        solid.material = &materials_[materialIndex(solid.group->hit(0), moment)];
+        lightUp(*solid.group, moment, solid);
+      }
+      for (std::size_t k = 0; k < size; ++k) {
+        paintSolid(solids[k], moment);
+      }
+    }
   }
 }
 

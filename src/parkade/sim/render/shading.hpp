@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "parkade/sim/render/floor_rays_kernel.hpp"
 #include "parkade/sim/render/lamp_map.hpp"
 #include "parkade/sim/render/light_bake.hpp"
 #include "parkade/sim/render/moment.hpp"
@@ -159,8 +160,22 @@ class Shader {
   [[nodiscard]] Eigen::Vector3f textureAt(const SampleGroup& group, const MipTexture& texture,
                                           const TexturePlace& first, float spread,
                                           const Moment& moment) const;
-  void shadeOne(const SampleGroup& group, const ShadeMaterial& material, const Moment& moment,
-                Surface& out) const;
+
+  /// A group not on the floor, between its light and its texture.
+  struct SolidGroup {
+    const SampleGroup* group = nullptr;
+    const ShadeMaterial* material = nullptr;
+    Surface* out = nullptr;
+    Eigen::Vector3f lux;
+    TexturePlace first;
+    float spread = 0.0F;
+    bool at_once = false;  ///< one look-up, in texels
+    MipTexture::Place texels;
+  };
+  /// All but the radiance.
+  void lightUp(const SampleGroup& group, const Moment& moment, SolidGroup& solid) const;
+  /// The radiance.
+  void paintSolid(const SolidGroup& solid, const Moment& moment) const;
 
   /// Groups on the floor that are shaded together (floor_shading.cpp).
   struct FloorGroups {
@@ -169,9 +184,11 @@ class Shader {
     std::array<Surface*, FloorBlock::kGroups> out;
   };
   void shadeFloor(const FloorGroups& floor, int samples, const Moment& moment) const;
-  /// Light of the floor's map at sixteen places.
-  void floorLux(const float* x, const float* y, int count, const Moment& moment,
-                Eigen::Vector3f* lux) const;
+  /// Light of the floor's map between four cells.
+  [[nodiscard]] Eigen::Vector3f floorLux(const GridPlaces& places, int k,
+                                         const Moment& moment) const;
+  void shadeChunk(const SampleGroup* groups, int count, int samples, const Moment& moment,
+                  Surface* out) const;
   [[nodiscard]] static float flickerFactor(std::uint16_t lamp, std::uint16_t share,
                                            const Moment& moment);
   [[nodiscard]] float lampBrightness(const Eigen::Vector3f& p, const Moment& moment) const;

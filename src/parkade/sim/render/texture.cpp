@@ -63,7 +63,7 @@ MipTexture::MipTexture(const Texture& texture) {
   }
 }
 
-Eigen::Vector3f MipTexture::sample(float u, float v, float texels) const {
+void MipTexture::find(float u, float v, float texels, Place& place) const {
   const int wanted = texels > 1.0F ? static_cast<int>(fastLog2(texels) + 0.5F) : 0;
   const Level& level =
       levels_[static_cast<std::size_t>(std::min(wanted, static_cast<int>(levels_.size()) - 1))];
@@ -76,14 +76,22 @@ Eigen::Vector3f MipTexture::sample(float u, float v, float texels) const {
   const int y0 = wrap(top, level.height);
   const int x1 = wrap(x0 + 1, level.width);
   const int y1 = wrap(y0 + 1, level.height);
-  const float ax = x - static_cast<float>(left);
-  const float ay = y - static_cast<float>(top);
   const auto* row0 = level.texels.data() + static_cast<std::size_t>(y0) * level.width;
   const auto* row1 = level.texels.data() + static_cast<std::size_t>(y1) * level.width;
-  const Eigen::Vector4f above =
-      (1.0F - ax) * texelOf(row0[x0].data()) + ax * texelOf(row0[x1].data());
-  const Eigen::Vector4f below =
-      (1.0F - ax) * texelOf(row1[x0].data()) + ax * texelOf(row1[x1].data());
+  place.texels[0] = row0 + x0;
+  place.texels[1] = row0 + x1;
+  place.texels[2] = row1 + x0;
+  place.texels[3] = row1 + x1;
+  place.right = x - static_cast<float>(left);
+  place.down = y - static_cast<float>(top);
+}
+
+Eigen::Vector3f MipTexture::read(const Place& place) {
+  const float ax = place.right;
+  const float ay = place.down;
+  const auto& [a, b, c, d] = place.texels;
+  const Eigen::Vector4f above = (1.0F - ax) * texelOf(a->data()) + ax * texelOf(b->data());
+  const Eigen::Vector4f below = (1.0F - ax) * texelOf(c->data()) + ax * texelOf(d->data());
   const Eigen::Vector4f mean = (1.0F / 65535.0F) * ((1.0F - ay) * above + ay * below);
   return mean.head<3>();
 }

@@ -21,14 +21,32 @@ class MipTexture {
   explicit MipTexture(const Texture& texture);
   /// The mean colour over a square of about that many texels a side: bilinear in the nearest level.
   /// Texture coordinates repeat.
-  [[nodiscard]] Eigen::Vector3f sample(float u, float v, float texels) const;
+  [[nodiscard]] Eigen::Vector3f sample(float u, float v, float texels) const {
+    Place place;
+    find(u, v, texels, place);
+    return read(place);
+  }
+  /// Four texels and where between them: what sample() reads. Finding them early lets memory
+  /// work in the meantime.
+  using Texel = std::array<std::uint16_t, 4>;  ///< linear, 65535 is 1
+  struct Place {
+    std::array<const Texel*, 4> texels{};  ///< upper two, lower two
+    float right = 0.0F;                    ///< of the way to the second and fourth
+    float down = 0.0F;                     ///< of the way to the lower two
+    void prefetch() const {
+      __builtin_prefetch(texels[0]);
+      __builtin_prefetch(texels[2]);
+    }
+  };
+  void find(float u, float v, float texels, Place& place) const;
+  [[nodiscard]] static Eigen::Vector3f read(const Place& place);
   [[nodiscard]] Eigen::Vector3f mean() const;
 
  private:
   struct Level {
     int width = 0;
     int height = 0;
-    std::vector<std::array<std::uint16_t, 4>> texels;  ///< linear, 65535 is 1
+    std::vector<Texel> texels;
   };
   std::vector<Level> levels_;
 };

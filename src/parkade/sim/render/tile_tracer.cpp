@@ -31,6 +31,7 @@ RTCScene TileTracer::movingIn(int tile, bool mirrored) const {
 
 void TileTracer::trace(int tile, TileSamples& out) const {
   const RTCScene moving = movingIn(tile, false);
+  table_.prefetchSpread(tile);
   const RayTable::Packet* packets = table_.packets(tile);
   RayPacket rays;
   for (int p = 0; p < table_.packetsPerTile(); ++p) {
@@ -54,7 +55,7 @@ void TileTracer::trace(int tile, TileSamples& out) const {
     }
     for (int k = 0; k < kPacket; ++k) {
       const auto i = static_cast<std::size_t>(table_.slot(p, k));
-      out.hits[i] = hitOf(*setup_.tracer, rays, k);
+      readHit(*setup_.tracer, rays, k, out.hits[i]);
       setup_.shader->prefetch(out.hits[i]);
       if (rays.valid[k] == 0) {
         out.hits[i].t = -1.0F;  // no ray at all: black
@@ -73,25 +74,6 @@ void traceBoth(const StaticTracer& tracer, RTCScene moving, RayPacket& packet, b
         coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     rtcIntersect16(packet.valid, moving, &context, &packet.rays);
   }
-}
-
-SurfaceHit hitOf(const StaticTracer& tracer, const RayPacket& packet, int lane) {
-  SurfaceHit hit;
-  const auto& raw = packet.rays.hit;
-  if (raw.geomID[lane] == RTC_INVALID_GEOMETRY_ID || packet.valid[lane] == 0) {
-    return hit;
-  }
-  if (raw.instID[0][lane] != RTC_INVALID_GEOMETRY_ID) {
-    hit.object = static_cast<std::int32_t>(raw.instID[0][lane]);
-    hit.triangle = raw.primID[lane];
-  } else {
-    hit.triangle = tracer.triangleOf(packet, lane);
-  }
-  hit.u = raw.u[lane];
-  hit.v = raw.v[lane];
-  hit.t = packet.rays.ray.tfar[lane];
-  hit.geometric_normal = packet.geometricNormal(lane);
-  return hit;
 }
 
 }  // namespace parkade::sim

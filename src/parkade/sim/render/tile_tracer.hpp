@@ -44,7 +44,28 @@ class TileTracer {
 /// Traces a packet through the static scene and then through what moves (where not null).
 void traceBoth(const StaticTracer& tracer, RTCScene moving, RayPacket& packet, bool coherent);
 
-/// A lane's result after traceBoth.
-SurfaceHit hitOf(const StaticTracer& tracer, const RayPacket& packet, int lane);
+/// A lane's result after traceBoth. Fills in place: a copy would wait for the stores before it.
+inline void readHit(const StaticTracer& tracer, const RayPacket& packet, int lane,
+                    SurfaceHit& hit) {
+  const auto& raw = packet.rays.hit;
+  if (raw.geomID[lane] == RTC_INVALID_GEOMETRY_ID || packet.valid[lane] == 0) {
+    hit.triangle = kNoTriangle;
+    hit.object = -1;
+    hit.t = 0.0F;
+    return;
+  }
+  const bool moving = raw.instID[0][lane] != RTC_INVALID_GEOMETRY_ID;
+  hit.object = moving ? static_cast<std::int32_t>(raw.instID[0][lane]) : -1;
+  hit.triangle = moving ? raw.primID[lane] : tracer.triangleOf(packet, lane);
+  hit.u = raw.u[lane];
+  hit.v = raw.v[lane];
+  hit.t = packet.rays.ray.tfar[lane];
+  hit.geometric_normal = packet.geometricNormal(lane);
+}
+inline SurfaceHit hitOf(const StaticTracer& tracer, const RayPacket& packet, int lane) {
+  SurfaceHit hit;
+  readHit(tracer, packet, lane, hit);
+  return hit;
+}
 
 }  // namespace parkade::sim
