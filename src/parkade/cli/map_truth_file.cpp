@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "parkade/eval/html_page.hpp"
 #include "parkade/io/csv.hpp"
@@ -34,6 +35,29 @@ Polygon footOf(const sim::Pillar& pillar) {
                      0.5 * pillar.size.x() * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
   }
   return circle;
+}
+
+bool isText(const sim::Marking& marking) {
+  return marking.semantic_class == SemanticClass::kPaintedNumber &&
+         marking.meaning.rfind("accessible", 0) != 0;
+}
+
+// Middle of the box around a number, along its own axes; other markings have their place there.
+Eigen::Vector2d middleOf(const sim::Marking& marking) {
+  if (!isText(marking)) return marking.position;
+  const Eigen::Vector2d up(std::cos(marking.heading), std::sin(marking.heading));
+  const Eigen::Vector2d right(up.y(), -up.x());
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9);
+  Eigen::Vector2d high = -low;
+  for (const Polygon& polygon : marking.polygons) {
+    for (const Eigen::Vector2d& p : polygon) {
+      const Eigen::Vector2d at(right.dot(p), up.dot(p));
+      low = low.cwiseMin(at);
+      high = high.cwiseMax(at);
+    }
+  }
+  const Eigen::Vector2d middle = 0.5 * (low + high);
+  return middle.x() * right + middle.y() * up;
 }
 
 void addAreas(const sim::Garage& garage, MapTruth& truth) {
@@ -116,16 +140,23 @@ void addSigns(const sim::Garage& garage, MapTruth& truth) {
 
 MapTruth truthOf(const sim::Garage& garage) {
   MapTruth truth;
+  std::set<std::string> painted;
+  for (const sim::Marking& marking : garage.markings) {
+    if (isText(marking)) painted.insert(marking.meaning);
+  }
   for (const sim::Slot& slot : garage.slots) {
-    truth.slots.push_back({slot.corners, slot.number, slot.zone, slot.occupied});
+    const bool numbered = painted.count(slot.number) > 0;
+    truth.slots.push_back({slot.corners, numbered ? slot.number : "", slot.zone, slot.occupied});
   }
   addAreas(garage, truth);
   for (const sim::Marking& marking : garage.markings) {
     if (!isMarkedObject(marking.semantic_class)) continue;
     const bool has_text = marking.semantic_class == SemanticClass::kArrow ||
-                          marking.semantic_class == SemanticClass::kSpeedLimitPaint;
+                          marking.semantic_class == SemanticClass::kSpeedLimitPaint ||
+                          isText(marking);
+    const Eigen::Vector2d place = middleOf(marking);
     truth.objects.push_back({marking.semantic_class,
-                             {marking.position.x(), marking.position.y(), 0.0},
+                             {place.x(), place.y(), 0.0},
                              has_text ? marking.meaning : "",
                              {},
                              1});

@@ -237,11 +237,15 @@ std::optional<TextTable> mapTable(const std::vector<BenchRecord>& records) {
                             {"corner m", "map.slots.entrance_error_m.median", 3, 1.0},
                             {"corner p95 m", "map.slots.entrance_error_m.p95", 3, 1.0},
                             {"availability", "map.slots.availability.accuracy", 3, 1.0},
+                            {"numbers", "map.slots.numbers.count", 0, 1.0},
+                            {"read rightly", "map.slots.numbers.right", 0, 1.0},
+                            {"wrongly", "map.slots.numbers.wrong", 0, 1.0},
                             {"lines IoU", "map.layers.parking_lines.tolerant_iou", 3, 1.0},
                             {"markers IoU", "map.layers.road_markers.tolerant_iou", 3, 1.0}});
   table.note =
       "Slots passed within 8 m; corner: entrance corners, median and p95; availability: share of "
-      "found slots told rightly; IoU within a cell of 5 cm.";
+      "found slots told rightly; numbers: found slots that have one painted; IoU within a cell of "
+      "5 cm.";
   return table;
 }
 

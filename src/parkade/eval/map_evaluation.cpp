@@ -126,6 +126,7 @@ void scoreContent(const MapSlot& told, const TruthSlot& real, const MapTruth& tr
   if (!real.number.empty()) {
     ++score.numbers;
     score.numbers_right += told.number == real.number ? 1 : 0;
+    score.numbers_wrong += !told.number.empty() && told.number != real.number ? 1 : 0;
   }
   if (!real.zone.empty()) {
     ++score.zones;

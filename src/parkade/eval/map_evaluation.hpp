@@ -66,7 +66,8 @@ struct SlotScore {
   double availability = 0.0;   ///< share of the found slots
   int numbers = 0;             ///< found slots with a painted number
   int numbers_right = 0;
-  int zones = 0;  ///< found slots that belong to a zone
+  int numbers_wrong = 0;  ///< the others of them were not read
+  int zones = 0;          ///< found slots that belong to a zone
   int zones_right = 0;
 };
 

@@ -158,6 +158,7 @@ TEST(MapEvaluation, RowShiftedByASlotIsMissedAtItsEndAndWronglyNumbered) {
   EXPECT_EQ(e.slots.found, 5);
   EXPECT_EQ(e.slots.wrong, 1);
   EXPECT_EQ(e.slots.numbers_right, 0);
+  EXPECT_EQ(e.slots.numbers_wrong, 5);
   EXPECT_EQ(e.slots.availability_right, 0);  // every other slot is occupied
 }
 

@@ -17,22 +17,23 @@ Json toJson(const Statistics& s) {
 }
 
 Json slotsJson(const SlotScore& s) {
-  return {{"passed", s.passed},
-          {"found", s.found},
-          {"told", s.told},
-          {"wrong", s.wrong},
-          {"duplicates", s.duplicates},
-          {"recall", s.recall},
-          {"precision", s.precision},
-          {"entrance_error_m", toJson(s.entrance_error)},
-          {"corner_error_m", toJson(s.corner_error)},
-          {"fitted_entrance_error_m", toJson(s.fitted_entrance_error)},
-          {"availability",
-           {{"accuracy", s.availability},
-            {"right", s.availability_right},
-            {"open", s.availability_open}}},
-          {"numbers", {{"count", s.numbers}, {"right", s.numbers_right}}},
-          {"zones", {{"count", s.zones}, {"right", s.zones_right}}}};
+  return {
+      {"passed", s.passed},
+      {"found", s.found},
+      {"told", s.told},
+      {"wrong", s.wrong},
+      {"duplicates", s.duplicates},
+      {"recall", s.recall},
+      {"precision", s.precision},
+      {"entrance_error_m", toJson(s.entrance_error)},
+      {"corner_error_m", toJson(s.corner_error)},
+      {"fitted_entrance_error_m", toJson(s.fitted_entrance_error)},
+      {"availability",
+       {{"accuracy", s.availability},
+        {"right", s.availability_right},
+        {"open", s.availability_open}}},
+      {"numbers", {{"count", s.numbers}, {"right", s.numbers_right}, {"wrong", s.numbers_wrong}}},
+      {"zones", {{"count", s.zones}, {"right", s.zones_right}}}};
 }
 
 Json objectJson(const ObjectScore& s) {
@@ -77,7 +78,8 @@ std::string slotsText(const MapEvaluation& e) {
   text += errors("entrance, best fit", s.fitted_entrance_error);
   text += fmt::format("  {:<26} {}, {} open\n", "availability",
                       share(s.availability_right, s.found), s.availability_open);
-  text += fmt::format("  {:<26} {}\n", "painted number", share(s.numbers_right, s.numbers));
+  text += fmt::format("  {:<26} {}, {} wrong\n", "painted number",
+                      share(s.numbers_right, s.numbers), s.numbers_wrong);
   text += fmt::format("  {:<26} {}\n", "zone", share(s.zones_right, s.zones));
   return text;
 }

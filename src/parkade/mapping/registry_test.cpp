@@ -104,6 +104,40 @@ TEST(SlotRegistry, FindsEverySlotOnceWithItsNumberAndAvailability) {
   EXPECT_GT(zones, 0.5 * slots.size());
 }
 
+TEST(SlotRegistry, NumbersAreToldWhenSureAndOfOneSlotOnly) {
+  const Plan plan = makePlan(1, 40.0, 0.5, 5);
+  const PlanObserver observer(plan, {});
+  SlotRegistry registry({});
+  Random random(3);
+  const SE2 pose(0.0, {20.0, 0.0});
+  const auto look = [&](TimeNs t_ns, const std::vector<std::vector<TextReading>>& numbers) {
+    std::vector<SlotObservation> slots = observer.observe(t_ns, pose, random, false).slots;
+    ASSERT_GE(slots.size(), 3U);
+    for (SlotObservation& slot : slots) slot.number.clear();
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      slots[i].number = numbers[i];
+      slots[i].number_place = 0.5 * (slots[i].corners[0] + slots[i].corners[2]);
+    }
+    registry.update(slots, t_ns, pose, 0);
+  };
+  const auto told = [&](TimeNs t_ns) {
+    std::vector<std::string> texts;
+    for (const MapSlot& slot : registry.slots(t_ns)) texts.push_back(slot.number);
+    texts.resize(3);
+    return texts;
+  };
+  const std::vector<TextReading> sure{{"104", 0.9}, {"04", 0.05}};
+  const std::vector<TextReading> part{{"04", 0.8}, {"104", 0.05}};  // its edge was missed
+  const std::vector<TextReading> faint{{"", 0.7}, {"7", 0.1}};
+  for (TimeNs t = 1; t <= 3; ++t) look(t * kTick, {faint, {}, {}});
+  EXPECT_THAT(told(4 * kTick), ::testing::Each(""));
+  for (TimeNs t = 4; t <= 8; ++t) look(t * kTick, {faint, t % 2 == 0 ? sure : part, {}});
+  EXPECT_EQ(told(9 * kTick), (std::vector<std::string>{"", "104", ""}));
+  // Another slot's number misread as the same one, less often.
+  for (TimeNs t = 9; t <= 11; ++t) look(t * kTick, {sure, {}, sure});
+  EXPECT_EQ(told(12 * kTick), (std::vector<std::string>{"", "104", ""}));
+}
+
 TEST(SlotRegistry, AvailabilityFollowsTheWorldAndFades) {
   Plan plan = makePlan(1, 40.0, 0.0, 3);
   SlotRegistry registry({});

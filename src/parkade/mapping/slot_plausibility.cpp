@@ -20,6 +20,8 @@ Corners within(const Corners& corners) {
   return smaller;
 }
 
+}  // namespace
+
 bool contains(const Corners& corners, const Vector2d& p) {
   int positive = 0;
   for (std::size_t k = 0; k < 4; ++k) {
@@ -27,6 +29,8 @@ bool contains(const Corners& corners, const Vector2d& p) {
   }
   return positive == 0 || positive == 4;
 }
+
+namespace {
 
 // A point on the line counts to its left, so that a way with a point there crosses once.
 bool meet(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d) {

@@ -25,6 +25,8 @@ struct SlotRegistryOptions {
   double change_time_s = 600.0;
   double duplicate_overlap = 0.25;
   double zone_range_m = 15.0;
+  double number_confidence = 0.9;
+  int min_number_readings = 3;
 
   void visit(OptionVisitor& v) {
     v.field("association_sigma_m", association_sigma_m, "m",
@@ -44,13 +46,16 @@ struct SlotRegistryOptions {
             "Slots that share more of the smaller one's area are one.", 0.05, 1.0);
     v.field("zone_range_m", zone_range_m, "m",
             "A slot takes the zone of the marker next to its middle, if this near.", 0.0, 100.0);
+    v.field("number_confidence", number_confidence, "probability",
+            "Painted numbers are told when read this surely over all views.", 0.1, 0.999999);
+    v.field("min_number_readings", min_number_readings, "count", "And this often.", 1, 1000);
   }
 };
 
 /// The parking slots that were seen: stable ids, corners fused over all observations, availability
 /// as a Bayes filter over time. Readings of one place that do not agree are kept beside each other,
-/// each with its own observations; the one that explains more of them is told, no slot twice. World
-/// frame.
+/// each with its own observations; the one that explains more of them is told, no slot twice. A
+/// painted number is told of one slot only, the one where it is read most surely. World frame.
 class SlotRegistry {
  public:
   explicit SlotRegistry(const SlotRegistryOptions& options);

@@ -10,7 +10,6 @@
 
 #include "parkade/core/time.hpp"
 #include "parkade/geometry/se2.hpp"
-#include "parkade/mapping/votes.hpp"
 #include "parkade/types/semantic_features.hpp"
 
 // Inside of the slot registry: what it holds of a slot, and an observation put into the world.
@@ -35,7 +34,6 @@ struct Track {
   std::int64_t observations = 0;
   std::int64_t misses = 0;
   TimeNs last_seen_ns = 0;
-  Votes numbers;
   std::array<double, 3> shapes{};
 
   [[nodiscard]] Corners corners() const {

@@ -259,7 +259,10 @@ SemanticFrame PlanObserver::observe(TimeNs t_ns, const SE2& T_world_vehicle, Ran
     const bool free = random.chance(noise_.availability_error) ? slot.occupied : !slot.occupied;
     o.probability_free = free ? 0.9 : 0.1;
     o.confidence = 0.9;
-    if (random.chance(0.3)) o.number = slot.number;
+    if (random.chance(0.3)) {
+      o.number = {{slot.number, 0.9}};
+      o.number_place = 0.25 * (o.corners[0] + o.corners[1] + o.corners[2] + o.corners[3]);
+    }
     frame.slots.push_back(o);
   }
   for (const PlanObject& object : plan_.objects) {

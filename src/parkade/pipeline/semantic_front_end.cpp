@@ -32,6 +32,7 @@ struct SemanticFrontEnd::Impl {
   std::unique_ptr<SmearFinder> smear;
   AgentTracker tracker;
   std::unique_ptr<ZoneMarkerFrontEnd> zone_markers;  // null: there are no networks for it
+  std::unique_ptr<PaintedNumberFrontEnd> numbers;    // null likewise
   // Taken by addOdometry(), used by look(), which may work in another thread meanwhile.
   struct View {
     GroundPlaneEstimate floor;
@@ -44,6 +45,7 @@ struct SemanticFrontEnd::Impl {
   StageClock stitch_clock{"bev"};
   StageClock segment_clock{"segment"};
   StageClock feature_clock{"features"};
+  StageClock number_clock{"slot numbers"};
   StageClock zone_clock{"zone markers"};
 };
 
@@ -67,6 +69,9 @@ Result<std::unique_ptr<SemanticFrontEnd>> SemanticFrontEnd::create(
   auto zone_markers = ZoneMarkerFrontEnd::create(rig, masks, options.zone_markers);
   if (!zone_markers) return zone_markers.error();
   impl->zone_markers = std::move(zone_markers).value();
+  auto numbers = PaintedNumberFrontEnd::create(rig, masks, options.painted_numbers);
+  if (!numbers) return numbers.error();
+  impl->numbers = std::move(numbers).value();
   return std::unique_ptr<SemanticFrontEnd>(new SemanticFrontEnd(std::move(impl)));
 }
 
@@ -127,6 +132,12 @@ Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames) {
   frame.moving = m.tracker.update(found.agents, SE2::fromSE3(view.now.T_odom_vehicle), frames.t_ns);
   frame.smear = m.smear->find(frame.labels);
   m.feature_clock.add(since(begin));
+  if (m.numbers != nullptr) {
+    begin = Clock::now();
+    const Status read = m.numbers->read(frames, m.bev_views, view.now, frame);
+    if (!read) return read.error();
+    m.number_clock.add(since(begin));
+  }
   if (m.zone_markers == nullptr) return frame;
   begin = Clock::now();
   auto markers = m.zone_markers->look(frames, view.now, view.floor.attitude);
@@ -147,7 +158,7 @@ const std::vector<LevelView>& SemanticFrontEnd::views() const {
 
 std::vector<StageTiming> SemanticFrontEnd::timings() const {
   return {impl_->stitch_clock.timing(), impl_->segment_clock.timing(),
-          impl_->feature_clock.timing(), impl_->zone_clock.timing()};
+          impl_->feature_clock.timing(), impl_->number_clock.timing(), impl_->zone_clock.timing()};
 }
 
 }  // namespace parkade

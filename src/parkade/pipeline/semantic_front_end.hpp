@@ -10,6 +10,7 @@
 #include "parkade/bev/stitcher.hpp"
 #include "parkade/core/options.hpp"
 #include "parkade/core/result.hpp"
+#include "parkade/pipeline/painted_number_front_end.hpp"
 #include "parkade/pipeline/stage_clock.hpp"
 #include "parkade/pipeline/zone_marker_front_end.hpp"
 #include "parkade/semantics/agent_tracker.hpp"
@@ -37,6 +38,7 @@ struct SemanticFrontEndOptions {
   SmearOptions smear;
   AgentTrackerOptions agents;
   ZoneMarkerFrontEndOptions zone_markers;
+  PaintedNumberFrontEndOptions painted_numbers;
 
   void visit(OptionVisitor& v) {
     v.field("network", network,
@@ -53,12 +55,13 @@ struct SemanticFrontEndOptions {
     v.group("smear", smear);
     v.group("agents", agents);
     v.group("zone_markers", zone_markers);
+    v.group("painted_numbers", painted_numbers);
   }
 };
 
 /// From the cameras' pictures to semantic features: stitches them on the floor that the odometry's
-/// landmarks tell, labels the picture, and draws features from the labels; zone markers come from
-/// the cameras' own pictures.
+/// landmarks tell, labels the picture, and draws features from the labels; zone markers and
+/// the numbers of slots come from the cameras' own pictures.
 class SemanticFrontEnd {
  public:
   /// masks: of the own body, one a camera, empty ones for those that have none (readBodyMasks()).

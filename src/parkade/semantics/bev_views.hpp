@@ -3,6 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
@@ -27,15 +29,19 @@ struct BevViews {
             cv::Mat(geometry.height_px, geometry.width_px, CV_8UC1, cv::Scalar(0))};
   }
 
-  /// The view of a ground point; the nearest one where no camera sees it.
-  [[nodiscard]] const View& viewAt(const BevGeometry& geometry, const Eigen::Vector2d& p) const {
+  /// Which view shows a ground point; views.size() where none does.
+  [[nodiscard]] std::size_t indexAt(const BevGeometry& geometry, const Eigen::Vector2d& p) const {
     const Eigen::Vector2d pixel = geometry.toPixel(p);
     const int u = static_cast<int>(pixel.x() + 0.5);
     const int v = static_cast<int>(pixel.y() + 0.5);
-    if (u >= 0 && v >= 0 && u < view_of.cols && v < view_of.rows) {
-      const auto index = view_of.at<unsigned char>(v, u);
-      if (index < views.size()) return views[index];
-    }
+    if (u < 0 || v < 0 || u >= view_of.cols || v >= view_of.rows) return views.size();
+    return std::min<std::size_t>(view_of.at<unsigned char>(v, u), views.size());
+  }
+
+  /// The view of a ground point; the nearest one where no camera sees it.
+  [[nodiscard]] const View& viewAt(const BevGeometry& geometry, const Eigen::Vector2d& p) const {
+    const std::size_t index = indexAt(geometry, p);
+    if (index < views.size()) return views[index];
     std::size_t best = 0;
     for (std::size_t i = 1; i < views.size(); ++i) {
       if ((views[i].foot - p).norm() < (views[best].foot - p).norm()) best = i;

@@ -6,13 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace parkade {
+#include "parkade/types/text_reading.hpp"
 
-/// A text with the probability that a network gives it.
-struct TextReading {
-  std::string text;
-  double probability = 0.0;
-};
+namespace parkade {
 
 /// The most probable texts of a sequence network's logits (connectionist temporal classification,
 /// Graves et al. 2006), best first, each with its whole probability over all alignments that a beam

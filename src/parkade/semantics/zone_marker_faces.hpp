@@ -10,6 +10,7 @@
 #include "parkade/camera/camera.hpp"
 #include "parkade/core/options.hpp"
 #include "parkade/geometry/se3.hpp"
+#include "parkade/semantics/text_patch.hpp"
 
 namespace parkade {
 
@@ -53,10 +54,6 @@ struct ZoneMarkerSight {
   cv::Rect box;               ///< in the label picture
   std::vector<ZoneMarkerFace> faces;  ///< from left to right; those that can be read
 };
-
-/// Straightened faces have this size; a face stands in the middle, grey beside it.
-inline constexpr int kZonePatchWidth = 96;
-inline constexpr int kZonePatchHeight = 40;
 
 /// Finds zone markers in the labels of a camera's picture and straightens their faces.
 ///

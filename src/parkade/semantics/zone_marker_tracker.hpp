@@ -10,7 +10,7 @@
 
 #include "parkade/core/options.hpp"
 #include "parkade/core/time.hpp"
-#include "parkade/semantics/text_evidence.hpp"
+#include "parkade/types/text_evidence.hpp"
 
 namespace parkade {
 

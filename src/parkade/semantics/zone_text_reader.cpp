@@ -109,12 +109,19 @@ Result<ZoneTextReader> ZoneTextReader::load(const std::string& path) {
   return ZoneTextReader(std::move(impl));
 }
 
-Result<std::vector<TextReading>> ZoneTextReader::read(const cv::Mat& patch) {
+Result<std::vector<TextReading>> ZoneTextReader::read(const cv::Mat& patch,
+                                                      const std::string& only) {
   PARKADE_CHECK(
       patch.type() == CV_8UC3 && patch.cols == kZonePatchWidth && patch.rows == kZonePatchHeight,
       "patch of {} x {} px, type {}", patch.cols, patch.rows, patch.type());
-  const Result<cv::Mat> logits = impl_->forward(patch);
+  Result<cv::Mat> logits = impl_->forward(patch);
   if (!logits) return logits.error();
+  constexpr double kNever = -1e4;
+  for (std::size_t i = 0; i < letters().size() && !only.empty(); ++i) {
+    if (only.find(letters()[i]) == std::string::npos) {
+      logits->row(static_cast<int>(i) + 1).setTo(cv::Scalar(kNever));
+    }
+  }
   return decodeSequence(*logits, impl_->file.letters, kBeam, kReadings);
 }
 

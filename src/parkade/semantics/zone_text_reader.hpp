@@ -26,8 +26,9 @@ class ZoneTextReader {
   ~ZoneTextReader();
 
   /// The most probable texts of a patch (CV_8UC3, kZonePatchWidth x kZonePatchHeight, checked),
-  /// best first; the empty text says that nothing is written there.
-  Result<std::vector<TextReading>> read(const cv::Mat& patch);
+  /// best first; the empty text says that nothing is written there. only: where given, texts of
+  /// these letters alone.
+  Result<std::vector<TextReading>> read(const cv::Mat& patch, const std::string& only = {});
 
   [[nodiscard]] const std::string& letters() const;
 

@@ -140,6 +140,29 @@ TEST(ZoneTextReader, ReadsRenderedFaces) {
   EXPECT_GE(right, 0.75 * kFaces);  // 0.79 of these letters, blurred and strange to it
 }
 
+TEST(ZoneTextReader, ReadsDigitsOnlyWhereToldSo) {
+  Result<ZoneTextReader> reader = ZoneTextReader::load(kSource + "/models/zone_text.yaml");
+  ASSERT_TRUE(reader) << reader.error().message;
+  Random random(6);
+  int right = 0;
+  int right_of_all = 0;
+  constexpr int kFaces = 100;
+  for (int i = 0; i < kFaces; ++i) {
+    const std::string text = std::to_string(random.integer(1, 299));
+    const cv::Mat face = renderedFace(text, random);
+    const auto digits = reader->read(face, "0123456789");
+    const auto all = reader->read(face);
+    ASSERT_TRUE(digits && all);
+    for (const TextReading& reading : *digits) {
+      EXPECT_EQ(reading.text.find_first_not_of("0123456789"), std::string::npos) << reading.text;
+    }
+    right += digits->front().text == text ? 1 : 0;
+    right_of_all += all->front().text == text ? 1 : 0;
+  }
+  std::printf("digits alone: %d of %d right, all letters: %d\n", right, kFaces, right_of_all);
+  EXPECT_GT(right, right_of_all);
+}
+
 TEST(ZoneTextReader, APlainFaceSaysNothing) {
   Result<ZoneTextReader> reader = ZoneTextReader::load(kSource + "/models/zone_text.yaml");
   ASSERT_TRUE(reader) << reader.error().message;

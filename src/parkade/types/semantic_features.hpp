@@ -12,6 +12,7 @@
 #include "parkade/core/time.hpp"
 #include "parkade/types/bev_image.hpp"
 #include "parkade/types/semantic_class.hpp"
+#include "parkade/types/text_reading.hpp"
 
 // What the semantics room says of one frame set. All positions are in the levelled vehicle frame of
 // bev_image.hpp (x forward, y left, z up from the ground under the rear axle), in metres;
@@ -63,7 +64,9 @@ struct SlotObservation {
   SlotMarking marking = SlotMarking::kClosed;
   double probability_free = 0.5;
   double confidence = 0.0;  ///< that it is a slot, 0 to 1
-  std::string number;       ///< painted number where read
+  /// Readings of the number painted in it, most probable first; empty where none was read.
+  std::vector<TextReading> number;
+  Eigen::Vector2d number_place = Eigen::Vector2d::Zero();  ///< its middle, where it was read
 };
 
 /// Anything else with a place: arrow, limit, stop line, crossing, bump, pillar, zone marker, sign.

@@ -11,18 +11,21 @@
 #include <utility>
 #include <vector>
 
-#include "parkade/semantics/sequence_decoding.hpp"
+#include "parkade/types/text_reading.hpp"
 
 namespace parkade {
 
-/// Which text several readings of one marker agree on: logarithms of its likelihood ratio to a
-/// text that no reading knows, added up. A reading may be wrong altogether, so that a text which
-/// one of them does not list loses only so much; and it may be a part of the text, where something
-/// hid the rest or the face's edge was missed. Where the edge between two faces was missed, the
-/// text stands there again, whole or in part ("D4D4", "D4D"); no marker is called so.
+/// Which text several readings of one marker or number agree on: logarithms of its likelihood ratio
+/// to a text that no reading knows, added up. A reading may be wrong altogether, so that a text
+/// which one of them does not list loses only so much; and it may be a part of the text, where
+/// something hid the rest or the face's edge was missed. Where the edge between two faces was
+/// missed, the text stands there again, whole or in part ("D4D4", "D4D"); no marker is called so.
 /// docs/math/zone_markers.md, eqs. (3) and (4).
 class TextEvidence {
  public:
+  /// two_faces: whether two faces that carry the text may have been read as one.
+  explicit TextEvidence(bool two_faces = true) : two_faces_(two_faces) {}
+
   /// The readings of one face, best first. A face that is probably plain says nothing of the
   /// marker.
   void add(const std::vector<TextReading>& readings) {
@@ -43,6 +46,18 @@ class TextEvidence {
     }
     faces_.push_back(std::move(face));
     if (faces_.size() > kFaces) faces_.pop_front();
+  }
+
+  void add(const TextEvidence& other) {
+    for (const auto& [text, value] : other.whole_) whole_[text] += value;
+    for (const Face& face : other.faces_) faces_.push_back(face);
+    while (faces_.size() > kFaces) faces_.pop_front();
+  }
+
+  /// Logarithm of the best text's likelihood ratio; 0 where nothing was read.
+  [[nodiscard]] double support() const {
+    const TextReading text = best();
+    return text.text.empty() ? 0.0 : evidenceFor(text.text);
   }
 
   /// The best text and its probability; empty and 0 where nothing was read.
@@ -87,7 +102,8 @@ class TextEvidence {
   }
   // Of the shortest text that, written again and again, holds this one from its first letter on
   // and once more at least in part; 0 where there is none. A number like 101 is no such text.
-  static std::size_t periodOf(const std::string& text) {
+  [[nodiscard]] std::size_t periodOf(const std::string& text) const {
+    if (!two_faces_) return 0;
     const bool begins_with_letter = !text.empty() && text.front() >= 'A' && text.front() <= 'Z';
     for (std::size_t period = 2; period < text.size(); ++period) {
       if (!begins_with_letter && text.size() < 2 * period) break;
@@ -99,8 +115,8 @@ class TextEvidence {
     return 0;
   }
   // Whether a reading is cut from the text written again and again, and longer than it.
-  static bool isRepeated(const std::string& reading, const std::string& text) {
-    if (text.size() < 2 || reading.size() <= text.size()) return false;
+  [[nodiscard]] bool isRepeated(const std::string& reading, const std::string& text) const {
+    if (!two_faces_ || text.size() < 2 || reading.size() <= text.size()) return false;
     std::string again;
     while (again.size() < reading.size() + text.size()) again += text;
     return again.find(reading) != std::string::npos;
@@ -125,6 +141,7 @@ class TextEvidence {
     return sum;
   }
 
+  bool two_faces_;
   std::map<std::string, double> whole_;  ///< evidence without parts: picks the candidates
   std::deque<Face> faces_;
 };
