@@ -42,9 +42,9 @@ bool isText(const sim::Marking& marking) {
          marking.meaning.rfind("accessible", 0) != 0;
 }
 
-// Middle of the box around a number, along its own axes; other markings have their place there.
+// Middle of the box around a marking, along its own axes; an arrow's place lies on its shaft.
 Eigen::Vector2d middleOf(const sim::Marking& marking) {
-  if (!isText(marking)) return marking.position;
+  if (marking.semantic_class == SemanticClass::kArrow) return marking.position;
   const Eigen::Vector2d up(std::cos(marking.heading), std::sin(marking.heading));
   const Eigen::Vector2d right(up.y(), -up.x());
   Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9);
