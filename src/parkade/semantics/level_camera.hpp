@@ -11,9 +11,9 @@
 namespace parkade {
 
 /// The picture of a level camera that looks at a marker: columns and heights over the depth.
-class LevelView {
+class LevelCamera {
  public:
-  LevelView(const Camera& camera, const SO3& R_level_cam, double azimuth)
+  LevelCamera(const Camera& camera, const SO3& R_level_cam, double azimuth)
       : camera_(camera), R_level_cam_(R_level_cam) {
     axes_.row(0) << std::sin(azimuth), -std::cos(azimuth), 0.0;  // right
     axes_.row(1) << 0.0, 0.0, 1.0;                               // up

@@ -135,7 +135,7 @@ struct LabelScale {
 /// A sight and the view and outline that it was measured in.
 struct MeasuredSight {
   ZoneMarkerSight sight;
-  LevelView view;
+  LevelCamera view;
   FittedMarker marker;
 };
 
@@ -146,7 +146,7 @@ std::optional<MeasuredSight> measure(const Blob& blob, const LabelScale& labels,
   Eigen::Vector3d middle;
   if (!camera.unproject(labels.toImage(at.x(), at.y()), middle)) return std::nullopt;
   const Eigen::Vector3d level = R_level_cam * middle;
-  const LevelView view(camera, R_level_cam, std::atan2(level.y(), level.x()));
+  const LevelCamera view(camera, R_level_cam, std::atan2(level.y(), level.x()));
   Eigen::Vector2d here;
   Eigen::Vector2d beside;
   Eigen::Vector2d below;

@@ -19,7 +19,7 @@ struct PatchPlane {
 };
 
 // CV_32F, of the patch's size.
-cv::Mat sampleFace(const cv::Mat& image, const LevelView& view, const PatchPlane& plane,
+cv::Mat sampleFace(const cv::Mat& image, const LevelCamera& view, const PatchPlane& plane,
                    double height_px) {
   // Near faces are sampled more finely than the patch, then averaged.
   const int fine = std::clamp(static_cast<int>(std::ceil(height_px / plane.scale)), 1, 4);
@@ -34,7 +34,7 @@ cv::Mat sampleFace(const cv::Mat& image, const LevelView& view, const PatchPlane
 
 }  // namespace
 
-ZoneMarkerFace straighten(const cv::Mat& image, const LevelView& view, const FittedFace& face,
+ZoneMarkerFace straighten(const cv::Mat& image, const LevelCamera& view, const FittedFace& face,
                           double middle) {
   const Eigen::Vector3d left(face.x_left * face.depth_left, middle, face.depth_left);
   const Eigen::Vector3d right(face.x_right * face.depth_right, middle, face.depth_right);

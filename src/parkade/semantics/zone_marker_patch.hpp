@@ -4,7 +4,7 @@
 
 #include <opencv2/core/mat.hpp>
 
-#include "parkade/semantics/level_view.hpp"
+#include "parkade/semantics/level_camera.hpp"
 #include "parkade/semantics/zone_marker_faces.hpp"
 #include "parkade/semantics/zone_marker_outline.hpp"
 
@@ -13,7 +13,7 @@ namespace parkade {
 /// A face as seen from straight ahead, sampled from the camera's picture. middle: height of the
 /// marker's middle over the camera, in marker heights. Without a patch where the face does not
 /// project into the camera.
-ZoneMarkerFace straighten(const cv::Mat& image, const LevelView& view, const FittedFace& face,
+ZoneMarkerFace straighten(const cv::Mat& image, const LevelCamera& view, const FittedFace& face,
                           double middle);
 
 }  // namespace parkade
