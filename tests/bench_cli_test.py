@@ -65,6 +65,7 @@ class BenchErrorTest(unittest.TestCase):
             (["--out", self.out, "--light", "bright"], 1, ["--light", "bright"]),
             (["--out", self.out, "--occupancy", "60"], 1, ["--occupancy", "between 0 and 1"]),
             (["--out", self.out, "--agents", "3"], 1, ["CARS:PEOPLE", "'3'"]),
+            (["--out", self.out, "--calib-error", "0.1:1:2"], 1, ["DEG:CM", "'0.1:1:2'"]),
             (["--out", self.out, "--cameras", "6"], 1, ["1..6"]),
             (["--out", self.out, "--variant", "fused"], 1, ["NAME="]),
             (["--out", self.out, "--variant", "vis=fused"], 1, ["'vis'"]),
@@ -198,16 +199,16 @@ class BenchTest(unittest.TestCase):
         other = self.imports.parent / "calibration"
         result = bench(
             "--out", other, "--routes", "test1", "--duration", SECONDS, "--fast", "--methods", "vis",
-            "--sequences", self.out / "sequences", "--calib-error", "0.5",
+            "--sequences", self.out / "sequences", "--calib-error", "0.5:1",
         )  # fmt: skip
         self.assertEqual(result.returncode, 0, result.stderr)
-        folder = other / "sequences" / "test1_calib0.5"
+        folder = other / "sequences" / "test1_calib0.5-1"
         self.assertTrue((folder / "mav0" / "cam0" / "data").is_symlink())
         drawn = self.out / "sequences" / "test1"
         self.assertNotEqual((folder / "rig.yaml").read_text(), (drawn / "rig.yaml").read_text())
         metrics = json.loads((other / "metrics.json").read_text(encoding="utf-8"))
         errors = {run["condition"]: run["ape"]["rmse"] for run in metrics["runs"]}
-        self.assertEqual(set(errors), {"", "calibration off by 0.5 deg, 0.5 cm"})
+        self.assertEqual(set(errors), {"", "calibration off by 0.5 deg, 1 cm"})
         self.assertNotEqual(*errors.values())
 
     def test_goes_on_where_it_stopped(self):

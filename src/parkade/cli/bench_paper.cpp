@@ -35,7 +35,7 @@ constexpr const char* kFooter =
     "  parkade bench --out DIR --quick                           a look: a few minutes\n"
     "  parkade bench --out DIR --garages random:10 --fast        ten garages of another kind\n"
     "  parkade bench --out DIR --routes test1 --light 10,50,200,1000 --methods fused\n"
-    "  parkade bench --out DIR --garages random:10 --fast --calib-error 0.1,0.3\n"
+    "  parkade bench --out DIR --garages random:10 --fast --calib-error 0.1:1\n"
     "  parkade bench --out DIR --variant wide=fused,vio.window.keyframes=12\n"
     "  parkade bench --out DIR --import orb-slam3=TRAJECTORIES   judges TRAJECTORIES/test1.tum, "
     "...";
@@ -227,8 +227,9 @@ std::shared_ptr<PaperBenchOptions> addPaperBenchOptions(CLI::App& bench) {
       ->type_name("CARS:PEOPLE,...");
   bench
       .add_option("--calib-error", o->calib_error,
-                  "Also with cameras told wrong by this many degrees and centimetres")
-      ->type_name("X,...");
+                  "Also with cameras told wrong by so many degrees and centimetres, as 0.1:1; one "
+                  "number: as many of either")
+      ->type_name("DEG:CM,...");
   bench.add_option("--cameras", o->cameras, "Also vis with so many cameras, as 1..6")
       ->type_name("FIRST..LAST");
   bench

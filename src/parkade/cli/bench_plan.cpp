@@ -5,11 +5,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <functional>
-#include <sstream>
 
+#include "parkade/cli/bench_conditions.hpp"
 #include "parkade/cli/semantic_garages.hpp"
 
 namespace parkade::cli {
@@ -32,25 +29,6 @@ const std::vector<BenchVariant>& knownVariants() {
       {{"fused", "fused, all cameras", true, true}, "fused", 0, {}, ""},
   };
   return kVariants;
-}
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  std::stringstream stream(text);
-  for (std::string part; std::getline(stream, part, separator);) {
-    if (!part.empty()) parts.push_back(part);
-  }
-  return parts;
-}
-
-Result<double> number(const std::string& option, const std::string& text) {
-  double value = 0.0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (code != std::errc() || end != text.data() + text.size()) {
-    return Error{
-        fmt::format("bench: {}: expected numbers with commas between, found '{}'", option, text)};
-  }
-  return value;
 }
 
 // NAME=REST.
@@ -136,83 +114,6 @@ Status addOwn(const PaperBenchOptions& options, BenchPlan& plan) {
     if (Status added = addVariant(plan, std::move(variant)); !added) return added;
   }
   return {};
-}
-
-// Values of one swept condition: how each changes a drive and what it is then called.
-Status sweep(const std::string& option, const std::string& values, const BenchDrive& base,
-             const std::function<Status(double value, BenchDrive& drive)>& change,
-             std::vector<BenchDrive>& kinds) {
-  for (const std::string& text : split(values, ',')) {
-    const Result<double> value = number(option, text);
-    if (!value) return value.error();
-    BenchDrive drive = base;
-    if (Status changed = change(*value, drive); !changed) return changed;
-    kinds.push_back(std::move(drive));
-  }
-  return {};
-}
-
-Status sweepAgents(const std::string& values, const BenchDrive& base,
-                   std::vector<BenchDrive>& kinds) {
-  for (const std::string& text : split(values, ',')) {
-    const std::vector<std::string> pair = split(text, ':');
-    const Result<double> cars = number("--agents", pair.empty() ? "" : pair[0]);
-    const Result<double> people = number("--agents", pair.size() != 2 ? "" : pair[1]);
-    constexpr double kMost = 50.0;
-    const auto countable = [](double n) { return n >= 0.0 && n <= kMost && n == std::floor(n); };
-    if (!cars || !people || !countable(*cars) || !countable(*people)) {
-      return Error{fmt::format(
-          "bench: --agents: expected CARS:PEOPLE with commas between, as 0:0,6:8, found '{}'",
-          text)};
-    }
-    BenchDrive drive = base;
-    drive.spec.cars = static_cast<int>(*cars);
-    drive.spec.people = static_cast<int>(*people);
-    drive.condition = fmt::format("{:g} cars, {:g} people", *cars, *people);
-    drive.name += fmt::format("_agents{:g}-{:g}", *cars, *people);
-    kinds.push_back(std::move(drive));
-  }
-  return {};
-}
-
-// The drive as it is and under the conditions that are swept, one at a time.
-Status addConditions(const PaperBenchOptions& options, const BenchDrive& base,
-                     std::vector<BenchDrive>& kinds) {
-  Status status = sweep(
-      "--light", options.light, base,
-      [](double lux, BenchDrive& drive) -> Status {
-        drive.spec.lux = lux;
-        drive.condition = fmt::format("{:g} lux", lux);
-        drive.name += fmt::format("_lux{:g}", lux);
-        return {};
-      },
-      kinds);
-  if (!status) return status;
-  status = sweep(
-      "--occupancy", options.occupancy, base,
-      [](double share, BenchDrive& drive) -> Status {
-        if (share < 0.0 || share > 1.0) {
-          return Error{fmt::format("bench: --occupancy {:g}: a share lies between 0 and 1", share)};
-        }
-        drive.spec.occupancy = share;
-        drive.condition = fmt::format("{:g} % taken", 100.0 * share);
-        drive.name += fmt::format("_taken{:g}", share);
-        return {};
-      },
-      kinds);
-  if (status) status = sweepAgents(options.agents, base, kinds);
-  if (!status) return status;
-  return sweep(
-      "--calib-error", options.calib_error, base,
-      [&base](double error, BenchDrive& drive) -> Status {
-        drive.spec.calib_error_deg = error;
-        drive.spec.calib_error_cm = error;
-        drive.condition = fmt::format("calibration off by {0:g} deg, {0:g} cm", error);
-        drive.name += fmt::format("_calib{:g}", error);
-        drive.pictures_of = base.name;
-        return {};
-      },
-      kinds);
 }
 
 // Drives of one garage and route under every condition, with every seed.

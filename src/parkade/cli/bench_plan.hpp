@@ -24,7 +24,7 @@ struct PaperBenchOptions {
   std::string light;                  ///< lux, with commas
   std::string occupancy;              ///< shares, with commas
   std::string agents;                 ///< CARS:PEOPLE, with commas
-  std::string calib_error;            ///< degrees, with commas; as many centimetres
+  std::string calib_error;            ///< DEG:CM, with commas; DEG alone: as many centimetres
   std::string cameras;                ///< "1..6"
   int seeds = 1;
   double duration_s = 0.0;
