@@ -3,12 +3,23 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 
 namespace parkade {
 
 /// The cross product's component out of the plane: positive where b lies to the left of a.
 inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
+}
+
+/// Whether p lies in a convex quadrilateral of either orientation.
+inline bool contains(const std::array<Eigen::Vector2d, 4>& quad, const Eigen::Vector2d& p) {
+  int positive = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (cross(quad[(i + 1) % 4] - quad[i], p - quad[i]) > 0.0) ++positive;
+  }
+  return positive == 0 || positive == 4;
 }
 
 }  // namespace parkade

@@ -20,18 +20,6 @@ Corners within(const Corners& corners) {
   return smaller;
 }
 
-}  // namespace
-
-bool contains(const Corners& corners, const Vector2d& p) {
-  int positive = 0;
-  for (std::size_t k = 0; k < 4; ++k) {
-    if (cross(corners[(k + 1) % 4] - corners[k], p - corners[k]) > 0.0) ++positive;
-  }
-  return positive == 0 || positive == 4;
-}
-
-namespace {
-
 // A point on the line counts to its left, so that a way with a point there crosses once.
 bool meet(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d) {
   const auto apart = [](double s, double t) { return (s >= 0.0) != (t >= 0.0); };

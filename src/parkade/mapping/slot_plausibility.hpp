@@ -12,9 +12,6 @@
 
 namespace parkade {
 
-/// Whether a point lies in the slot.
-bool contains(const std::array<Eigen::Vector2d, 4>& corners, const Eigen::Vector2d& p);
-
 /// Whether a way of the vehicle's origin crosses a slot's sides or its rear, a fifth within: who
 /// parks crosses the entrance alone.
 bool drivenThrough(const std::array<Eigen::Vector2d, 4>& corners,

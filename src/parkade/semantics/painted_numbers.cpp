@@ -8,22 +8,13 @@
 #include <limits>
 #include <optional>
 
+#include "parkade/geometry/planar.hpp"
 #include "parkade/semantics/text_patch.hpp"
 
 namespace parkade {
 namespace {
 
 constexpr auto kNumber = static_cast<std::uint8_t>(SemanticClass::kPaintedNumber);
-
-bool contains(const std::array<Eigen::Vector2d, 4>& corners, const Eigen::Vector2d& p) {
-  int positive = 0;
-  for (std::size_t k = 0; k < 4; ++k) {
-    const Eigen::Vector2d along = corners[(k + 1) % 4] - corners[k];
-    const Eigen::Vector2d to = p - corners[k];
-    positive += along.x() * to.y() - along.y() * to.x() > 0.0 ? 1 : 0;
-  }
-  return positive == 0 || positive == 4;
-}
 
 /// Takes the extents of the labelled pixels within the object's outline; false where there are
 /// none.

@@ -13,15 +13,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Whether p lies in a convex quadrilateral of either orientation.
-bool contains(const std::array<Vector2d, 4>& quad, const Vector2d& p) {
-  int positive = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (cross(quad[(i + 1) % 4] - quad[i], p - quad[i]) > 0.0) ++positive;
-  }
-  return positive == 0 || positive == 4;
-}
-
 // Share of a's area that lies in b, from a grid of points.
 double shareInside(const std::array<Vector2d, 4>& a, const std::array<Vector2d, 4>& b) {
   constexpr int kSteps = 8;
