@@ -22,6 +22,7 @@
 #include "parkade/semantics/line_extraction.hpp"
 #include "parkade/semantics/segmentation.hpp"
 #include "parkade/semantics/slot_extraction.hpp"
+#include "parkade/types/level_frame.hpp"
 
 namespace parkade::cli {
 namespace {
@@ -134,8 +135,7 @@ std::vector<TrueSlot> SlotScore::trueSlots(const SemanticSampler& sampler,
                                            const SemanticSample& sample,
                                            const BevLabels& truth) const {
   const sim::Garage& garage = sampler.simulation().garage();
-  const GroundAttitude& a = sample.true_attitude;
-  const SO3 tilt = SO3::fromYawPitchRoll(0.0, a.pitch, a.roll);
+  const SO3 tilt = levelFrom(sample.true_attitude).rotation();
   const SE3 T_vehicle_world = sample.T_world_vehicle.inverse();
   const BevGeometry& g = truth.geometry;
   const LabelProbe probe(truth);

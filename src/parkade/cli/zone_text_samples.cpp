@@ -10,6 +10,7 @@
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
 #include "parkade/semantics/zone_marker_faces.hpp"
+#include "parkade/types/level_frame.hpp"
 
 namespace parkade::cli {
 
@@ -20,8 +21,7 @@ Status writeZoneTexts(const SemanticSampler& sampler, const SemanticSample& samp
   constexpr double kHidden = 0.3;
   const auto index = static_cast<std::size_t>(camera);
   const RigCamera& eye = sampler.simulation().toldRig().cameras[index];
-  const SO3 R_level_vehicle =
-      SO3::fromYawPitchRoll(0.0, sample.attitude.pitch, sample.attitude.roll);
+  const SO3 R_level_vehicle = levelFrom(sample.attitude).rotation();
   ZoneMarkerFaceOptions options;
   options.min_height_px = 8.0;
   options.max_faces = 12;

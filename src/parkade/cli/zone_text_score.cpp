@@ -18,6 +18,7 @@
 #include "parkade/semantics/segmentation.hpp"
 #include "parkade/semantics/zone_marker_faces.hpp"
 #include "parkade/semantics/zone_text_reader.hpp"
+#include "parkade/types/level_frame.hpp"
 
 namespace parkade::cli {
 namespace {
@@ -108,8 +109,7 @@ class ZoneTextScore : public SampleScore {
       if (!found) return found.error();
       labels = found->labels;
     }
-    const SO3 R_level_vehicle =
-        SO3::fromYawPitchRoll(0.0, sample.attitude.pitch, sample.attitude.roll);
+    const SO3 R_level_vehicle = levelFrom(sample.attitude).rotation();
     const std::vector<ZoneMarkerSight> sights =
         findZoneMarkers(labels, image, sampler.bodyMask(camera), eye.camera,
                         R_level_vehicle * eye.T_vehicle_cam.rotation(), options_.faces);

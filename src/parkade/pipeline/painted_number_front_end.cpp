@@ -11,6 +11,7 @@
 #include "parkade/core/log.hpp"
 #include "parkade/semantics/class_map.hpp"
 #include "parkade/semantics/zone_text_reader.hpp"
+#include "parkade/types/level_frame.hpp"
 
 namespace parkade {
 namespace {
@@ -106,9 +107,7 @@ Status PaintedNumberFrontEnd::read(const FrameSet& frames, const BevViews& views
   Impl& m = *impl_;
   const Eigen::Vector3d place = odometry.T_odom_vehicle.translation();
   if (m.last_place && (place - *m.last_place).norm() < m.options.distance_m) return {};
-  const GroundAttitude& attitude = frame.attitude;
-  const SE3 T_level_vehicle(SO3::fromYawPitchRoll(0.0, attitude.pitch, attitude.roll),
-                            {0.0, 0.0, attitude.height});
+  const SE3 T_level_vehicle = levelFrom(frame.attitude);
   for (const Seen& seen : m.bestSeen(frames, views, frame, T_level_vehicle)) {
     m.last_place = place;
     const RigCamera& eye = m.rig.cameras[seen.camera];

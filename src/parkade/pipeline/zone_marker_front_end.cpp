@@ -10,6 +10,7 @@
 #include "parkade/semantics/level_views.hpp"
 #include "parkade/semantics/segmentation.hpp"
 #include "parkade/semantics/zone_text_reader.hpp"
+#include "parkade/types/level_frame.hpp"
 
 namespace parkade {
 
@@ -82,8 +83,7 @@ Result<std::vector<ObjectObservation>> ZoneMarkerFrontEnd::look(const FrameSet& 
   const SE3 T_up_odom(SO3::fromTwoVectors(odometry.up_odom, Eigen::Vector3d::UnitZ()),
                       Eigen::Vector3d::Zero());
   const SE3 T_up_vehicle = T_up_odom * odometry.T_odom_vehicle;
-  const SE3 T_level_vehicle(SO3::fromYawPitchRoll(0.0, attitude.pitch, attitude.roll),
-                            {0.0, 0.0, attitude.height});
+  const SE3 T_level_vehicle = levelFrom(attitude);
   m.views.clear();
   const std::size_t cameras = m.rig.cameras.size();
   int looked = 0;
