@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <set>
 
+#include "parkade/cli/marking_box.hpp"
 #include "parkade/eval/html_page.hpp"
 #include "parkade/io/csv.hpp"
 #include "parkade/io/file.hpp"
@@ -42,24 +43,6 @@ bool isText(const sim::Marking& marking) {
          marking.meaning.rfind("accessible", 0) != 0;
 }
 
-// Middle of the box around a marking, along its own axes; an arrow's place lies on its shaft.
-Eigen::Vector2d middleOf(const sim::Marking& marking) {
-  if (marking.semantic_class == SemanticClass::kArrow) return marking.position;
-  const Eigen::Vector2d up(std::cos(marking.heading), std::sin(marking.heading));
-  const Eigen::Vector2d right(up.y(), -up.x());
-  Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9);
-  Eigen::Vector2d high = -low;
-  for (const Polygon& polygon : marking.polygons) {
-    for (const Eigen::Vector2d& p : polygon) {
-      const Eigen::Vector2d at(right.dot(p), up.dot(p));
-      low = low.cwiseMin(at);
-      high = high.cwiseMax(at);
-    }
-  }
-  const Eigen::Vector2d middle = 0.5 * (low + high);
-  return middle.x() * right + middle.y() * up;
-}
-
 void addAreas(const sim::Garage& garage, MapTruth& truth) {
   for (const sim::Marking& marking : garage.markings) {
     for (const Polygon& polygon : marking.polygons) {
@@ -79,21 +62,6 @@ void addAreas(const sim::Garage& garage, MapTruth& truth) {
     const Eigen::Vector2d along = (b - a).normalized();
     const Eigen::Vector2d out(along.y(), -along.x());
     truth.areas.push_back({SemanticClass::kWall, {a, b, b + out, a + out}});
-  }
-}
-
-bool isMarkedObject(SemanticClass semantic_class) {
-  switch (semantic_class) {
-    case SemanticClass::kArrow:
-    case SemanticClass::kSpeedLimitPaint:
-    case SemanticClass::kStopLine:
-    case SemanticClass::kCrossing:
-    case SemanticClass::kSpeedBump:
-    case SemanticClass::kPaintedNumber:
-    case SemanticClass::kWheelStop:
-      return true;
-    default:
-      return false;
   }
 }
 
@@ -150,11 +118,11 @@ MapTruth truthOf(const sim::Garage& garage) {
   }
   addAreas(garage, truth);
   for (const sim::Marking& marking : garage.markings) {
-    if (!isMarkedObject(marking.semantic_class)) continue;
+    if (!isFloorObject(marking.semantic_class)) continue;
     const bool has_text = marking.semantic_class == SemanticClass::kArrow ||
                           marking.semantic_class == SemanticClass::kSpeedLimitPaint ||
                           isText(marking);
-    const Eigen::Vector2d place = middleOf(marking);
+    const Eigen::Vector2d place = middleOf(marking, marking.polygons);
     truth.objects.push_back({marking.semantic_class,
                              {place.x(), place.y(), 0.0},
                              has_text ? marking.meaning : "",

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "parkade/cli/marking_box.hpp"
 #include "parkade/geometry/se2.hpp"
 #include "parkade/semantics/marking_pieces.hpp"
 #include "parkade/sim/world/parked_cars.hpp"
@@ -17,21 +17,6 @@ constexpr double kNear = 12.0;   // m: farther objects lie outside any picture
 constexpr double kRange = 10.0;  // m: objects up to here count
 
 using Polygons = std::vector<std::vector<Eigen::Vector2d>>;
-
-bool isObject(SemanticClass c) {
-  switch (c) {
-    case SemanticClass::kArrow:
-    case SemanticClass::kSpeedLimitPaint:
-    case SemanticClass::kStopLine:
-    case SemanticClass::kCrossing:
-    case SemanticClass::kSpeedBump:
-    case SemanticClass::kPaintedNumber:
-    case SemanticClass::kWheelStop:
-      return true;
-    default:
-      return false;
-  }
-}
 
 class TruthCollector {
  public:
@@ -71,7 +56,7 @@ class TruthCollector {
   }
 
   void addMarking(const sim::Marking& marking) {
-    if (!isObject(marking.semantic_class) || !isNear(marking.position)) return;
+    if (!isFloorObject(marking.semantic_class) || !isNear(marking.position)) return;
     if (marking.semantic_class != SemanticClass::kWheelStop) {
       addPaint(marking, marking.polygons);
       return;
@@ -80,21 +65,9 @@ class TruthCollector {
   }
 
   void addPaint(const sim::Marking& marking, const Polygons& polygons) {
-    const SE2 T_world_marking(marking.heading, marking.position);
-    const SE2 T_marking_world = T_world_marking.inverse();
-    Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::max());
-    Eigen::Vector2d high = -low;
-    for (const auto& polygon : polygons) {
-      for (const Eigen::Vector2d& p : polygon) {
-        low = low.cwiseMin(T_marking_world * p);
-        high = high.cwiseMax(T_marking_world * p);
-      }
-    }
-    Eigen::Vector2d middle = 0.5 * (low + high);
-    if (marking.semantic_class == SemanticClass::kArrow) middle.y() = 0.0;
     TrueObject object;
     object.semantic_class = marking.semantic_class;
-    object.position = T_level_world_ * (T_world_marking * middle);
+    object.position = T_level_world_ * middleOf(marking, polygons);
     object.heading = wrapAngle(marking.heading + T_level_world_.angle());
     object.text = marking.meaning;
     object.in_sight = object.position.norm() < kRange && inSight(polygons, object.semantic_class);
