@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -37,22 +38,21 @@ Status sweep(const std::string& option, const std::string& values, const BenchDr
   return {};
 }
 
-// "A:B" as two numbers; "A" alone as A and A where one will do.
-Result<std::pair<double, double>> pairOf(const std::string& option, const std::string& text,
-                                         bool one_will_do) {
+// "A:B" as two numbers that are not negative; "A" alone as A and A where one will do.
+std::optional<std::pair<double, double>> pairOf(const std::string& text, bool one_will_do) {
   const std::vector<std::string> parts = split(text, ':');
   if (parts.size() == 2 || (one_will_do && parts.size() == 1)) {
-    const Result<double> first = number(option, parts.front());
-    const Result<double> second = number(option, parts.back());
+    const Result<double> first = number("", parts.front());
+    const Result<double> second = number("", parts.back());
     if (first && second && *first >= 0.0 && *second >= 0.0) return std::pair(*first, *second);
   }
-  return Error{fmt::format("{} '{}'", option, text)};
+  return std::nullopt;
 }
 
 Status sweepAgents(const std::string& values, const BenchDrive& base,
                    std::vector<BenchDrive>& kinds) {
   for (const std::string& text : split(values, ',')) {
-    const auto pair = pairOf("--agents", text, false);
+    const auto pair = pairOf(text, false);
     constexpr double kMost = 50.0;
     const auto countable = [](double n) { return n <= kMost && n == std::floor(n); };
     if (!pair || !countable(pair->first) || !countable(pair->second)) {
@@ -74,7 +74,7 @@ Status sweepAgents(const std::string& values, const BenchDrive& base,
 Status sweepCalibration(const std::string& values, const BenchDrive& base,
                         std::vector<BenchDrive>& kinds) {
   for (const std::string& text : split(values, ',')) {
-    const auto pair = pairOf("--calib-error", text, true);
+    const auto pair = pairOf(text, true);
     if (!pair) {
       return Error{fmt::format(
           "bench: --calib-error: expected DEG:CM with commas between, as 0.1:1,0.3:1, found '{}'",

@@ -10,14 +10,11 @@
 #include "parkade/cli/child_process.hpp"
 #include "parkade/cli/eval_map.hpp"
 #include "parkade/cli/map_truth_file.hpp"
-#include "parkade/cli/sim_record.hpp"
-#include "parkade/cli/sim_truth.hpp"
 #include "parkade/cli/told_covariances.hpp"
 #include "parkade/core/random.hpp"
 #include "parkade/eval/map_report.hpp"
 #include "parkade/eval/report.hpp"
 #include "parkade/io/file.hpp"
-#include "parkade/io/sequence_writer.hpp"
 #include "parkade/io/trajectory_io.hpp"
 
 namespace parkade::cli {
