@@ -5,13 +5,13 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <optional>
 
 #include "parkade/mapping/map_check.hpp"
+#include "parkade/mapping/slot_numbers.hpp"
 #include "parkade/mapping/slot_plausibility.hpp"
 #include "parkade/mapping/slot_track.hpp"
 #include "parkade/mapping/votes.hpp"
-#include "parkade/types/text_evidence.hpp"
 
 namespace parkade {
 
@@ -20,6 +20,8 @@ using slot_registry::logOdds;
 using slot_registry::Matrix4;
 using slot_registry::mayBeSame;
 using slot_registry::Seen;
+using slot_registry::SlotNumber;
+using slot_registry::SlotNumbers;
 using slot_registry::toWorld;
 using slot_registry::Track;
 using slot_registry::Vector4;
@@ -33,18 +35,10 @@ struct SlotRegistry::Impl {
     std::int64_t anchor;
   };
   std::vector<Place> way;  // of the vehicle's origin
-  // A number on the floor, whatever slot it turns out to lie in.
-  struct Number {
-    Place place;
-    int readings = 0;
-    TextEvidence text{false};
-  };
-  std::vector<Number> numbers;
+  SlotNumbers numbers;
 
-  void addNumber(const SlotObservation& o, const SE2& T_world_vehicle, std::int64_t anchor);
-  // Enters the number that a slot's area bears, where it is sure; its support.
-  double readNumber(MapSlot& slot) const;
-
+  explicit Impl(const SlotRegistryOptions& given)
+      : options(given), numbers(given.min_number_readings, given.number_confidence) {}
   [[nodiscard]] double fadedLogOdds(const Track& track, TimeNs now_ns) const {
     const double seconds = std::max(0.0, toSeconds(now_ns - track.availability_ns));
     return track.log_odds_free * std::exp(-seconds / options.change_time_s);
@@ -101,34 +95,6 @@ void SlotRegistry::Impl::add(const Seen& seen, TimeNs t_ns, std::int64_t anchor)
   const Matrix4 own = added.covariance;
   fuse(added, seen, t_ns);
   added.covariance = own;  // one observation counts once
-}
-
-void SlotRegistry::Impl::addNumber(const SlotObservation& o, const SE2& T_world_vehicle,
-                                   std::int64_t anchor) {
-  if (o.number.empty()) return;
-  constexpr double kApart = 0.6;  // m
-  const Eigen::Vector2d p = T_world_vehicle * o.number_place;
-  auto near = std::find_if(numbers.begin(), numbers.end(), [&](const Number& number) {
-    return (number.place.p - p).norm() < kApart;
-  });
-  if (near == numbers.end()) near = numbers.insert(near, Number{{p, anchor}});
-  ++near->readings;
-  near->place.p += (p - near->place.p) / near->readings;
-  near->text.add(o.number);
-}
-
-double SlotRegistry::Impl::readNumber(MapSlot& slot) const {
-  TextEvidence text(false);
-  int readings = 0;
-  for (const Number& number : numbers) {
-    if (!contains(slot.corners, number.place.p)) continue;
-    text.add(number.text);
-    readings += number.readings;
-  }
-  if (readings < options.min_number_readings) return 0.0;
-  const TextReading best = text.best();
-  if (best.probability >= options.number_confidence) slot.number = best.text;
-  return text.support();
 }
 
 void SlotRegistry::Impl::countMisses(const SE2& T_world_vehicle, const std::vector<bool>& was_seen,
@@ -213,26 +179,8 @@ void SlotRegistry::Impl::mergeDuplicates() {
   }
 }
 
-namespace {
-
-// No two slots bear one number: where it was misread, it was so less surely. supports: by slot.
-void keepSurestNumbers(const std::vector<double>& supports, std::vector<MapSlot>& slots) {
-  std::map<std::string, std::size_t> surest;
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    if (slots[i].number.empty()) continue;
-    const auto [it, first] = surest.try_emplace(slots[i].number, i);
-    if (first) continue;
-    const bool better = supports[i] > supports[it->second];
-    slots[better ? it->second : i].number.clear();
-    if (better) it->second = i;
-  }
-}
-
-}  // namespace
-
-SlotRegistry::SlotRegistry(const SlotRegistryOptions& options) : impl_(std::make_unique<Impl>()) {
-  impl_->options = options;
-}
+SlotRegistry::SlotRegistry(const SlotRegistryOptions& options)
+    : impl_(std::make_unique<Impl>(options)) {}
 SlotRegistry::~SlotRegistry() = default;
 SlotRegistry::SlotRegistry(SlotRegistry&&) noexcept = default;
 SlotRegistry& SlotRegistry::operator=(SlotRegistry&&) noexcept = default;
@@ -250,7 +198,7 @@ void SlotRegistry::update(const std::vector<SlotObservation>& observations, Time
   };
   std::vector<Seen> all;
   for (const SlotObservation& o : observations) {
-    m.addNumber(o, T_world_vehicle, anchor);
+    if (!o.number.empty()) m.numbers.add(o.number, T_world_vehicle * o.number_place, anchor);
     all.push_back(toWorld(o, T_world_vehicle, m.options.corner_floor_m));
   }
   const double sigma2 = m.options.association_sigma_m * m.options.association_sigma_m;
@@ -301,9 +249,7 @@ void SlotRegistry::moveWithAnchors(const std::function<SE2(std::int64_t)>& corre
     track.covariance = (turn * track.covariance * turn.transpose()).eval();
   }
   for (Impl::Place& place : impl_->way) place.p = correction(place.anchor) * place.p;
-  for (Impl::Number& number : impl_->numbers) {
-    number.place.p = correction(number.place.anchor) * number.place.p;
-  }
+  impl_->numbers.moveWithAnchors(correction);
   impl_->mergeDuplicates();
 }
 
@@ -316,7 +262,7 @@ std::vector<MapSlot> SlotRegistry::slots(TimeNs now_ns,
   std::vector<Eigen::Vector2d> way;
   for (const Impl::Place& place : impl_->way) way.push_back(place.p);
   std::vector<MapSlot> result;
-  std::vector<double> supports;
+  std::vector<std::optional<SlotNumber>> numbers;
   for (const Track* chosen : impl_->distinct()) {
     const Track& track = *chosen;
     if (drivenThrough(track.corners(), way) || holdsRoadMarking(track.corners(), objects)) continue;
@@ -326,7 +272,7 @@ std::vector<MapSlot> SlotRegistry::slots(TimeNs now_ns,
     slot.corner_sigma = std::sqrt(std::max(0.0, track.covariance.trace() / 4.0));
     slot.shape = static_cast<SlotShape>(std::max_element(track.shapes.begin(), track.shapes.end()) -
                                         track.shapes.begin());
-    supports.push_back(impl_->readNumber(slot));
+    numbers.push_back(impl_->numbers.within(slot.corners));
     slot.probability_free = 1.0 / (1.0 + std::exp(-impl_->fadedLogOdds(track, now_ns)));
     slot.observations = track.observations;
     slot.last_seen_ns = track.last_seen_ns;
@@ -340,7 +286,10 @@ std::vector<MapSlot> SlotRegistry::slots(TimeNs now_ns,
     }
     result.push_back(std::move(slot));
   }
-  keepSurestNumbers(supports, result);
+  keepSurestNumbers(numbers);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    if (numbers[i]) result[i].number = numbers[i]->text;
+  }
   return result;
 }
 

@@ -54,11 +54,8 @@ class TextEvidence {
     while (faces_.size() > kFaces) faces_.pop_front();
   }
 
-  /// Logarithm of the best text's likelihood ratio; 0 where nothing was read.
-  [[nodiscard]] double support() const {
-    const TextReading text = best();
-    return text.text.empty() ? 0.0 : evidenceFor(text.text);
-  }
+  /// Logarithm of a text's likelihood ratio.
+  [[nodiscard]] double support(const std::string& text) const { return evidenceFor(text); }
 
   /// The best text and its probability; empty and 0 where nothing was read.
   [[nodiscard]] TextReading best() const {
