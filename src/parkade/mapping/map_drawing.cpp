@@ -43,8 +43,9 @@ Bgr colourOf(SemanticClass semantic_class) {
     case SemanticClass::kWall:
       return {150, 140, 130};
     case SemanticClass::kZoneMarker:
-    case SemanticClass::kGuideSign:
       return {120, 200, 60};
+    case SemanticClass::kGuideSign:
+      return {70, 140, 10};
     case SemanticClass::kVehicle:
       return {80, 80, 200};
     case SemanticClass::kPedestrian:
@@ -111,6 +112,22 @@ void drawSlot(Picture& picture, const MapSlot& slot) {
         pixel[c] = cv::saturate_cast<uchar>(0.45 * pixel[c] + 0.55 * fill[c]);
     }
   }
+}
+
+// Signs hang over the ground and so have no cells: a square where each is.
+void drawSign(Picture& picture, const MapObject& object) {
+  if (object.semantic_class != SemanticClass::kGuideSign &&
+      object.semantic_class != SemanticClass::kSpeedLimitSign) {
+    return;
+  }
+  constexpr double kHalf = 0.25;  // m
+  const double scale = 1.0 / picture.metres_per_px;
+  const int half = std::max(1, static_cast<int>(std::lround(kHalf * scale)));
+  const int u = static_cast<int>(std::floor((object.position.x() - picture.top_left.x()) * scale));
+  const int v = static_cast<int>(std::floor((picture.top_left.y() - object.position.y()) * scale));
+  const cv::Rect place = cv::Rect(u - half, v - half, 2 * half + 1, 2 * half + 1) &
+                         cv::Rect(0, 0, picture.image.cols, picture.image.rows);
+  if (!place.empty()) picture.image(place).setTo(pixelOf(colourOf(object.semantic_class)));
 }
 
 // What the pictures of a map show, from the lower left to the upper right edge, metres.
@@ -191,6 +208,7 @@ Result<cv::Mat> drawMap(const ParkingMap& map, double metres_per_px) {
     }
   }
   for (const MapSlot& slot : map.slots) drawSlot(*picture, slot);
+  for (const MapObject& object : map.objects) drawSign(*picture, object);
   return picture->image;
 }
 
@@ -278,6 +296,7 @@ std::vector<MapColour> mapLegend() {
       if (!slot && !known) legend.push_back(colour);
     }
   }
+  legend.push_back({"guide sign", colourOf(SemanticClass::kGuideSign)});
   legend.push_back({"person", colourOf(SemanticClass::kPedestrian)});
   return legend;
 }

@@ -36,6 +36,22 @@ TEST(MapDrawing, PictureShowsFreeAndOccupiedSlots) {
   EXPECT_GT(occupied[2], occupied[1]);
 }
 
+TEST(MapDrawing, SignsAreSquaresOfTheirOwn) {
+  ParkingMap map;
+  MapSlot slot;
+  slot.corners = {Eigen::Vector2d(0, 0), Eigen::Vector2d(4, 0), Eigen::Vector2d(4, 4),
+                  Eigen::Vector2d(0, 4)};
+  map.slots = {slot};
+  MapObject sign;
+  sign.semantic_class = SemanticClass::kGuideSign;
+  sign.position = {1.0, 3.0, 2.2};
+  map.objects = {sign};
+  const Result<cv::Mat> picture = drawMap(map, 0.1);
+  ASSERT_TRUE(picture);
+  EXPECT_EQ(picture->at<cv::Vec3b>(10, 10), colourNamed(mapLegend(), "guide sign"));
+  EXPECT_NE(picture->at<cv::Vec3b>(10, 16), colourNamed(mapLegend(), "guide sign"));
+}
+
 TEST(MapDrawing, ALayersPictureHoldsThatLayerAloneInTheColoursOfItsLegend) {
   ParkingMap map;
   map.grid.add(GridLayer::kParkingLines, {0.02, 0.02}, SemanticClass::kSlotLine, 2.0F);

@@ -10,6 +10,7 @@
 #include "parkade/mapping/column_sight.hpp"
 #include "parkade/mapping/frame_evidence.hpp"
 #include "parkade/mapping/map_check.hpp"
+#include "parkade/mapping/sign_sight.hpp"
 
 namespace parkade {
 namespace {
@@ -18,6 +19,10 @@ constexpr double kGate = 16.27;  // 99.9 % of chi-square, 3 degrees
 
 bool isUpright(SemanticClass c) {
   return roleOf(c) == LayerRole::kStructure;
+}
+
+bool isSign(SemanticClass c) {
+  return c == SemanticClass::kGuideSign || c == SemanticClass::kSpeedLimitSign;
 }
 
 }  // namespace
@@ -94,7 +99,10 @@ void ObjectRegistry::update(const std::vector<ObjectObservation>& observations,
     ++track.observations;
   }
   if (labels != nullptr) look(*labels, T_world_vehicle, used);
-  for (const LevelView& view : views) lookAcross(view, T_world_vehicle);
+  for (const LevelView& view : views) {
+    lookAcross(view, T_world_vehicle);
+    lookUp(view, T_world_vehicle, z_vehicle);
+  }
 }
 
 void ObjectRegistry::look(const BevLabels& labels, const SE2& T_world_vehicle,
@@ -153,6 +161,18 @@ void ObjectRegistry::lookAcross(const LevelView& view, const SE2& T_world_vehicl
   }
 }
 
+void ObjectRegistry::lookUp(const LevelView& view, const SE2& T_world_vehicle, double z_vehicle) {
+  const SE2 T_vehicle_world = T_world_vehicle.inverse();
+  for (Track& track : tracks_) {
+    if (!isSign(track.semantic_class)) continue;
+    Eigen::Vector3d p;
+    p << T_vehicle_world * track.position.head<2>(), track.position.z() - z_vehicle;
+    const ColumnSight sight = signSight(view, p, track.semantic_class);
+    track.in_views.hits += sight == ColumnSight::kThere ? 1 : 0;
+    track.in_views.misses += sight == ColumnSight::kNotThere ? 1 : 0;
+  }
+}
+
 void ObjectRegistry::mergeDuplicates() {
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     for (std::size_t j = tracks_.size() - 1; j > i; --j) {
@@ -205,10 +225,20 @@ double ObjectRegistry::existence(const Track& track) const {
 }
 
 bool ObjectRegistry::exists(const Track& track) const {
-  const int least = track.semantic_class == SemanticClass::kZoneMarker
-                        ? options_.min_marker_observations
-                        : options_.min_observations;
-  if (track.observations < least) return false;
+  const bool followed =
+      track.semantic_class == SemanticClass::kZoneMarker || isSign(track.semantic_class);
+  if (track.observations <
+      (followed ? options_.min_marker_observations : options_.min_observations)) {
+    return false;
+  }
+  if (viewed_ && isSign(track.semantic_class)) {
+    const SignViewOptions& o = options_.sign_views;
+    constexpr double kEven = 0.5;
+    if (track.in_views.hits < o.min_hits ||
+        track.in_views.logOdds({o.detection, o.false_alarm, kEven}) <= 0.0) {
+      return false;
+    }
+  }
   if (viewed_ && track.semantic_class == SemanticClass::kPillar &&
       track.in_views.hits < options_.pillar_views.min_hits) {
     return false;

@@ -34,6 +34,23 @@ struct PillarViewOptions {
   }
 };
 
+/// What they say of signs.
+struct SignViewOptions {
+  double detection = 0.5;
+  double false_alarm = 0.15;
+  int min_hits = 3;
+
+  void visit(OptionVisitor& v) {
+    v.field("detection", detection, "probability",
+            "That a picture that looks at a sign shows one there.", 0.01, 0.99);
+    v.field("false_alarm", false_alarm, "probability",
+            "That it shows one where none is: errors repeat.", 0.01, 0.99);
+    v.field("min_hits", min_hits, "count",
+            "Signs that fewer pictures showed are not told, where there are such pictures.", 0,
+            1000);
+  }
+};
+
 struct ObjectRegistryOptions {
   double association_sigma_m = 0.15;
   double max_distance_m = 1.0;
@@ -45,6 +62,7 @@ struct ObjectRegistryOptions {
   ExistenceOptions paint{0.4, 0.1, 0.1};
   ExistenceOptions upright{0.6, 0.25, 0.1};  // smears beside pillars look alike again and again
   PillarViewOptions pillar_views;
+  SignViewOptions sign_views;
 
   void visit(OptionVisitor& v) {
     v.field("association_sigma_m", association_sigma_m, "m",
@@ -56,7 +74,7 @@ struct ObjectRegistryOptions {
     v.field("min_observations", min_observations, "count", "Objects seen less often are not told.",
             1, 1000);
     v.field("min_marker_observations", min_marker_observations, "count",
-            "The same of zone markers, each of whose observations rests on several views.", 1,
+            "The same of zone markers and signs, whose observations rest on several views each.", 1,
             1000);
     v.field("min_own_share", min_own_share, "ratio",
             "Of the pixels at an object's place that are labelled as its class or as one that has "
@@ -67,6 +85,7 @@ struct ObjectRegistryOptions {
     v.group("paint", paint);
     v.group("upright", upright);
     v.group("pillar_views", pillar_views);
+    v.group("sign_views", sign_views);
   }
 };
 
@@ -78,7 +97,7 @@ class ObjectRegistry {
 
   /// labels: of the picture that the observations come from. Where given, objects in plain sight
   /// there that were not observed lose evidence, and their places' labels vote on them. views: of
-  /// the same instant; each confirms or refutes the pillars that it looks at.
+  /// the same instant; each confirms or refutes the pillars and signs that it looks at.
   void update(const std::vector<ObjectObservation>& observations, const SE2& T_world_vehicle,
               double z_vehicle, std::int64_t anchor, const BevLabels* labels = nullptr,
               const std::vector<LevelView>& views = {});
@@ -101,11 +120,12 @@ class ObjectRegistry {
     double outline_confidence = 0.0;
     std::int64_t observations = 0;
     Existence existence;
-    Existence in_views;  ///< of a pillar, by cameras' own pictures
+    Existence in_views;  ///< of a pillar or sign, by cameras' own pictures
     AreaShares votes;    ///< sum of what the labels showed of its place in plain sight
   };
   void look(const BevLabels& labels, const SE2& T_world_vehicle, const std::vector<bool>& observed);
   void lookAcross(const LevelView& view, const SE2& T_world_vehicle);
+  void lookUp(const LevelView& view, const SE2& T_world_vehicle, double z_vehicle);
   /// Log-odds.
   [[nodiscard]] double existence(const Track& track) const;
   [[nodiscard]] bool exists(const Track& track) const;

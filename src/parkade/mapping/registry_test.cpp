@@ -284,6 +284,29 @@ TEST(ObjectRegistry, FindsArrowsPillarsAndMarkersOnce) {
   EXPECT_GT(objects.size(), 20U);
 }
 
+TEST(ObjectRegistry, SignsAreToldWhereCamerasPicturesShowThem) {
+  ObjectObservation seen;
+  seen.semantic_class = SemanticClass::kGuideSign;
+  seen.position = {5.0, 1.0, 2.2};
+  seen.covariance = 0.04 * Eigen::Matrix3d::Identity();
+  seen.confidence = 0.9;
+  const LevelView empty = testing::emptyLevelView();
+  LevelView shown = testing::emptyLevelView();
+  testing::drawColumn(shown, seen.position.head<2>(), 0.8, SemanticClass::kGuideSign, 2.0, 2.4);
+  const auto told = [&](int hits, int misses) {
+    ObjectRegistry registry({});
+    registry.update({seen}, SE2(), 0.0, 0);
+    for (int k = 0; k < hits; ++k) registry.update({}, SE2(), 0.0, 0, nullptr, {shown});
+    for (int k = 0; k < misses; ++k) registry.update({}, SE2(), 0.0, 0, nullptr, {empty});
+    return registry.objects().size();
+  };
+  EXPECT_EQ(told(0, 0), 1U);  // without such pictures
+  EXPECT_EQ(told(2, 0), 0U);
+  EXPECT_EQ(told(4, 0), 1U);
+  EXPECT_EQ(told(4, 2), 1U);
+  EXPECT_EQ(told(4, 20), 0U);
+}
+
 // A floor with a 1 m x 0.5 m stop line at (4, 0), labelled for a part of its width.
 BevLabels stopLineLabels(double share) {
   BevLabels labels;

@@ -21,18 +21,23 @@ struct ZoneMarkerFrontEnd::Impl {
   SegmentationNetwork network;
   ZoneTextReader reader;
   ZoneMarkerTracker tracker;
+  SignFollower signs;
   std::size_t next_camera = 0;
   std::vector<LevelView> views = {};  // of the last look
 
   // What one camera sees, in the odometry's frame turned so that z points up.
   Result<std::vector<ZoneMarkerView>> viewsOf(std::size_t camera, const cv::Mat& image,
-                                              const SE3& T_up_vehicle, const SE3& T_level_vehicle) {
+                                              const SE3& T_up_vehicle, const SE3& T_level_vehicle,
+                                              TimeNs t_ns) {
     const RigCamera& eye = rig.cameras[camera];
     Result<ViewLabels> labels = network.segmentView(image);
     if (!labels) return labels.error();
     views.push_back(
         levelView(labels->labels, masks[camera], eye.camera, T_level_vehicle * eye.T_vehicle_cam));
     const SE3 T_up_cam = T_up_vehicle * eye.T_vehicle_cam;
+    const Status signs_seen =
+        signs.add(labels->labels, image, masks[camera], eye.camera, T_up_cam, t_ns, reader);
+    if (!signs_seen) return signs_seen.error();
     std::vector<ZoneMarkerView> markers;
     for (const ZoneMarkerSight& sight :
          findZoneMarkers(labels->labels, image, masks[camera], eye.camera, T_up_cam.rotation(),
@@ -71,9 +76,9 @@ Result<std::unique_ptr<ZoneMarkerFrontEnd>> ZoneMarkerFrontEnd::create(
   if (!reader_path) return reader_path.error();
   Result<ZoneTextReader> reader = ZoneTextReader::load(*reader_path);
   if (!reader) return reader.error();
-  return std::unique_ptr<ZoneMarkerFrontEnd>(new ZoneMarkerFrontEnd(
-      std::make_unique<Impl>(Impl{options, rig, std::move(masks), std::move(network).value(),
-                                  std::move(reader).value(), ZoneMarkerTracker(options.tracker)})));
+  return std::unique_ptr<ZoneMarkerFrontEnd>(new ZoneMarkerFrontEnd(std::make_unique<Impl>(
+      Impl{options, rig, std::move(masks), std::move(network).value(), std::move(reader).value(),
+           ZoneMarkerTracker(options.tracker), SignFollower(options.signs)})));
 }
 
 Result<std::vector<ObjectObservation>> ZoneMarkerFrontEnd::look(const FrameSet& frames,
@@ -93,7 +98,7 @@ Result<std::vector<ObjectObservation>> ZoneMarkerFrontEnd::look(const FrameSet& 
     if (camera >= frames.images.size() || frames.images[camera].empty()) continue;
     ++looked;
     Result<std::vector<ZoneMarkerView>> views =
-        m.viewsOf(camera, frames.images[camera], T_up_vehicle, T_level_vehicle);
+        m.viewsOf(camera, frames.images[camera], T_up_vehicle, T_level_vehicle, frames.t_ns);
     if (!views) return views.error();
     m.tracker.add(*views, frames.t_ns);
   }
@@ -102,17 +107,21 @@ Result<std::vector<ObjectObservation>> ZoneMarkerFrontEnd::look(const FrameSet& 
   Eigen::Matrix3d R_vehicle_up = Eigen::Matrix3d::Identity();
   R_vehicle_up.topLeftCorner<2, 2>() = T_vehicle_odom.rotationMatrix();
   std::vector<ObjectObservation> observations;
-  for (const ZoneMarker& marker : m.tracker.takeTold()) {
+  const auto observe = [&](SemanticClass semantic_class, const ZoneMarker& marker) {
     const Eigen::Vector3d p_odom = T_up_odom.inverse() * marker.position;
     ObjectObservation o;
-    o.semantic_class = SemanticClass::kZoneMarker;
+    o.semantic_class = semantic_class;
     o.position << T_vehicle_odom * p_odom.head<2>(),
         (marker.position - T_up_vehicle.translation()).z() + attitude.height;
     o.covariance = R_vehicle_up * marker.covariance * R_vehicle_up.transpose();
     o.text = marker.text;
     o.confidence = marker.confidence;
     observations.push_back(std::move(o));
+  };
+  for (const ZoneMarker& marker : m.tracker.takeTold()) {
+    observe(SemanticClass::kZoneMarker, marker);
   }
+  for (const FollowedSign& told : m.signs.takeTold()) observe(told.semantic_class, told.sign);
   return observations;
 }
 

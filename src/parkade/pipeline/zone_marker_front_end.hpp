@@ -9,6 +9,7 @@
 #include "parkade/camera/rig.hpp"
 #include "parkade/core/options.hpp"
 #include "parkade/core/result.hpp"
+#include "parkade/pipeline/sign_follower.hpp"
 #include "parkade/semantics/zone_marker_faces.hpp"
 #include "parkade/semantics/zone_marker_tracker.hpp"
 #include "parkade/types/level_view.hpp"
@@ -25,6 +26,7 @@ struct ZoneMarkerFrontEndOptions {
   int views = 1;
   ZoneMarkerFaceOptions faces;
   ZoneMarkerTrackerOptions tracker;
+  SignFollowerOptions signs;
 
   void visit(OptionVisitor& v) {
     v.field("enabled", enabled, "Whether zone markers are looked for in the cameras' pictures.");
@@ -35,11 +37,12 @@ struct ZoneMarkerFrontEndOptions {
             "Cameras whose pictures are looked at each time; all take their turns.", 1, 64);
     v.group("faces", faces);
     v.group("tracker", tracker);
+    v.group("signs", signs);
   }
 };
 
-/// Zone markers on pillars, from the cameras' own pictures: labels some of them in turn, reads the
-/// markers in sight and places them by several views. Not thread-safe.
+/// Zone markers on pillars and signs, from the cameras' own pictures: labels some of them in turn,
+/// reads what is in sight and places it by several views. Not thread-safe.
 class ZoneMarkerFrontEnd {
  public:
   /// Null where it is switched off, or where Parkade's own networks are not installed (which is
@@ -50,8 +53,8 @@ class ZoneMarkerFrontEnd {
       const Rig& rig, std::vector<cv::Mat> masks, const ZoneMarkerFrontEndOptions& options);
   ~ZoneMarkerFrontEnd();
 
-  /// The markers that have become well enough known by this frame set, in its levelled vehicle
-  /// frame; each rests on views of its own. odometry: of this frame set. In order of time.
+  /// The markers and signs that have become well enough known by this frame set, in its levelled
+  /// vehicle frame; each rests on views of its own. odometry: of this frame set. In order of time.
   Result<std::vector<ObjectObservation>> look(const FrameSet& frames, const PoseEstimate& odometry,
                                               const GroundAttitude& attitude);
 

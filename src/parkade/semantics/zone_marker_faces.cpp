@@ -15,7 +15,13 @@
 namespace parkade {
 namespace {
 
-constexpr auto kMarker = static_cast<std::uint8_t>(SemanticClass::kZoneMarker);
+/// What is looked for, and how its faces are taken.
+struct Search {
+  SemanticClass semantic_class = SemanticClass::kZoneMarker;
+  bool corners = true;       ///< it may stand on two faces of a pillar
+  bool straightened = true;  ///< its faces bear text
+  double share = 1.0;        ///< of the height, about the middle, that bears it
+};
 
 /// One connected patch of marker labels and what stands around it.
 struct Blob {
@@ -29,12 +35,13 @@ bool mayHide(std::uint8_t label) {
          label == static_cast<std::uint8_t>(SemanticClass::kPedestrian);
 }
 
-std::vector<Blob> findBlobs(const cv::Mat& labels, const cv::Mat& mask, int min_pixels) {
+std::vector<Blob> findBlobs(const cv::Mat& labels, const cv::Mat& mask, SemanticClass wanted,
+                            int min_pixels) {
   cv::Mat components;
   cv::Mat stats;
   cv::Mat centroids;
-  const int count =
-      cv::connectedComponentsWithStats(labels == kMarker, components, stats, centroids, 8, CV_32S);
+  const int count = cv::connectedComponentsWithStats(labels == static_cast<int>(wanted), components,
+                                                     stats, centroids, 8, CV_32S);
   std::vector<Blob> blobs;
   for (int i = 1; i < count; ++i) {
     if (stats.at<int>(i, cv::CC_STAT_AREA) < min_pixels) continue;
@@ -140,7 +147,7 @@ struct MeasuredSight {
 };
 
 std::optional<MeasuredSight> measure(const Blob& blob, const LabelScale& labels,
-                                     const Camera& camera, const SO3& R_level_cam) {
+                                     const Camera& camera, const SO3& R_level_cam, bool corners) {
   const cv::Rect& box = blob.box;
   const Eigen::Vector2d at(box.x + 0.5 * (box.width - 1), box.y + 0.5 * (box.height - 1));
   Eigen::Vector3d middle;
@@ -164,7 +171,7 @@ std::optional<MeasuredSight> measure(const Blob& blob, const LabelScale& labels,
   if (points.empty()) return std::nullopt;
   const Outline outline = outlineOf(points, pixel);
   const FittedMarker marker =
-      fitMarker(outline.columns, outline.x_left, outline.x_right, 0.5 * pixel.y());
+      fitMarker(outline.columns, outline.x_left, outline.x_right, 0.5 * pixel.y(), corners);
   const double x = 0.5 * (outline.x_left + outline.x_right);
   ZoneMarkerSight sight;
   sight.box = box;
@@ -178,12 +185,21 @@ std::optional<MeasuredSight> measure(const Blob& blob, const LabelScale& labels,
   return MeasuredSight{sight, view, marker};
 }
 
-}  // namespace
+/// The middle of a face, a share of its height and as much of its width less.
+FittedFace middleOf(const FittedFace& face, double share) {
+  const double middle = 0.5 * (face.x_left + face.x_right);
+  const double half = 0.5 * share * (face.x_right - face.x_left);
+  const auto depth = [&](double x) {
+    const double s = (x - face.x_left) / (face.x_right - face.x_left);
+    // 1 / depth is linear; the unit is the new height.
+    return 1.0 / ((1.0 - s) / face.depth_left + s / face.depth_right) / share;
+  };
+  return {middle - half, middle + half, depth(middle - half), depth(middle + half)};
+}
 
-std::vector<ZoneMarkerSight> findZoneMarkers(const cv::Mat& labels, const cv::Mat& image,
-                                             const cv::Mat& mask, const Camera& camera,
-                                             const SO3& R_level_cam,
-                                             const ZoneMarkerFaceOptions& options) {
+std::vector<ZoneMarkerSight> find(const cv::Mat& labels, const cv::Mat& image, const cv::Mat& mask,
+                                  const Camera& camera, const SO3& R_level_cam,
+                                  const Search& search, const ZoneMarkerFaceOptions& options) {
   PARKADE_CHECK(labels.type() == CV_8UC1, "labels of type {}", labels.type());
   PARKADE_CHECK(image.cols == camera.width() && image.rows == camera.height(),
                 "picture of {} x {} px, the camera has {} x {}", image.cols, image.rows,
@@ -192,13 +208,14 @@ std::vector<ZoneMarkerSight> findZoneMarkers(const cv::Mat& labels, const cv::Ma
                           static_cast<double>(image.rows) / labels.rows}};
   std::vector<ZoneMarkerSight> sights;
   int faces = 0;
-  for (const Blob& blob : findBlobs(labels, mask, options.min_label_px)) {
-    std::optional<MeasuredSight> found = measure(blob, scale, camera, R_level_cam);
+  for (const Blob& blob : findBlobs(labels, mask, search.semantic_class, options.min_label_px)) {
+    std::optional<MeasuredSight> found = measure(blob, scale, camera, R_level_cam, search.corners);
     if (!found) continue;
     for (const FittedFace& face : found->marker.faces) {
-      if (found->sight.cut || faces >= options.max_faces) break;
+      if (found->sight.cut || !search.straightened || faces >= options.max_faces) break;
       if (face.slant() > options.max_slant_deg * M_PI / 180.0) continue;
-      ZoneMarkerFace straight = straighten(image, found->view, face, found->marker.middle);
+      ZoneMarkerFace straight = straighten(image, found->view, middleOf(face, search.share),
+                                           found->marker.middle / search.share);
       if (straight.height_px < options.min_height_px || straight.patch.empty()) continue;
       found->sight.faces.push_back(std::move(straight));
       ++faces;
@@ -206,6 +223,24 @@ std::vector<ZoneMarkerSight> findZoneMarkers(const cv::Mat& labels, const cv::Ma
     sights.push_back(std::move(found->sight));
   }
   return sights;
+}
+
+}  // namespace
+
+std::vector<ZoneMarkerSight> findZoneMarkers(const cv::Mat& labels, const cv::Mat& image,
+                                             const cv::Mat& mask, const Camera& camera,
+                                             const SO3& R_level_cam,
+                                             const ZoneMarkerFaceOptions& options) {
+  return find(labels, image, mask, camera, R_level_cam, {}, options);
+}
+
+std::vector<ZoneMarkerSight> findSigns(const cv::Mat& labels, const cv::Mat& image,
+                                       const cv::Mat& mask, const Camera& camera,
+                                       const SO3& R_level_cam, SemanticClass sign,
+                                       const ZoneMarkerFaceOptions& options) {
+  constexpr double kInsideRing = 0.85;  // of a round plate's mean height over its columns
+  const bool limit = sign == SemanticClass::kSpeedLimitSign;
+  return find(labels, image, mask, camera, R_level_cam, {sign, false, limit, kInsideRing}, options);
 }
 
 }  // namespace parkade

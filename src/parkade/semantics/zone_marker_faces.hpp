@@ -11,6 +11,7 @@
 #include "parkade/core/options.hpp"
 #include "parkade/geometry/se3.hpp"
 #include "parkade/semantics/text_patch.hpp"
+#include "parkade/types/semantic_class.hpp"
 
 namespace parkade {
 
@@ -69,5 +70,12 @@ std::vector<ZoneMarkerSight> findZoneMarkers(const cv::Mat& labels, const cv::Ma
                                              const cv::Mat& mask, const Camera& camera,
                                              const SO3& R_level_cam,
                                              const ZoneMarkerFaceOptions& options);
+
+/// The same for signs of a class: one face each. That of a speed-limit sign is straightened, the
+/// middle of the plate inside its ring; of a guide sign none.
+std::vector<ZoneMarkerSight> findSigns(const cv::Mat& labels, const cv::Mat& image,
+                                       const cv::Mat& mask, const Camera& camera,
+                                       const SO3& R_level_cam, SemanticClass sign,
+                                       const ZoneMarkerFaceOptions& options);
 
 }  // namespace parkade

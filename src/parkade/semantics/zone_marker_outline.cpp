@@ -131,12 +131,12 @@ double FittedFace::slant() const {
 }
 
 FittedMarker fitMarker(const std::vector<MarkerColumn>& columns, double x_left, double x_right,
-                       double sigma) {
+                       double sigma, bool corners) {
   PARKADE_CHECK(!columns.empty() && x_left < x_right && sigma > 0.0, "no outline to fit");
   const OutlineFit fits(columns, x_left, x_right, sigma);
   Fit fit = fits.single();
   constexpr double kCornerPrior = 2.0;  // two parameters more, and pillars mostly show two faces
-  if (columns.size() >= 4) {
+  if (corners && columns.size() >= 4) {
     const Fit corner = fits.corner();
     if (corner.cost + kCornerPrior < fit.cost) fit = corner;
   }

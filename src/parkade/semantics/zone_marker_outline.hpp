@@ -35,8 +35,8 @@ struct FittedMarker {
 
 /// Fits one vertical face, or the two faces of a pillar with right angles, to an outline: whichever
 /// explains it better. sigma: of a column's height. At least one column (checked); columns in
-/// ascending order of x. docs/math/zone_markers.md.
+/// ascending order of x. corners: whether it may have two faces. docs/math/zone_markers.md.
 FittedMarker fitMarker(const std::vector<MarkerColumn>& columns, double x_left, double x_right,
-                       double sigma);
+                       double sigma, bool corners = true);
 
 }  // namespace parkade

@@ -36,7 +36,7 @@ struct ZoneMarkerTrackerOptions {
             "Markers are told when placed this well over the ground, 1 sigma.", 0.01, 5.0);
     v.field("told_views", told_views, "count", "And seen this often.", 1, 100);
     v.field("told_confidence", told_confidence, "probability",
-            "And read this surely over all views.", 0.1, 0.999999);
+            "And read this surely over all views; 0: read or not.", 0.0, 0.999999);
     v.field("forget_s", forget_s, "s", "Markers not seen for longer are forgotten.", 0.1, 600.0);
     v.field("max_views", max_views, "count", "Views of a marker that are kept, the latest.", 3,
             1000);
