@@ -25,6 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr int kAhead = 3;  // frame sets
 constexpr int kGroundPx = 480;
 constexpr double kGroundMetresPerPx = 0.03;  // 14.4 m across
 
@@ -167,7 +168,8 @@ class Recorder {
         return renderer_->draw(index, wanted);
       };
     }
-    sim::SimSource source(simulation_, told_rig_, std::move(draw));
+    sim::SimSource source(simulation_, told_rig_, std::move(draw), kAhead,
+                          simulation_->spec().threads);
     ProgressPrinter progress(simulation_->spec().name());
     while (true) {
       const Result<std::optional<SensorEvent>> event = source.next();

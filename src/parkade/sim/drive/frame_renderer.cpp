@@ -140,6 +140,8 @@ cv::Mat grayOf(const cv::Mat& bgr) {
 
 namespace {
 
+constexpr int kAhead = 3;  // frame sets
+
 // Draws the chosen cameras.
 class ChosenFrames {
  public:
@@ -214,7 +216,8 @@ Result<std::unique_ptr<SimSource>> openSimSource(const std::string& address,
                                                        std::move(chosen), options.gray);
     draw = [frames](int index) { return frames->draw(index); };
   }
-  return std::make_unique<SimSource>(*simulation, std::move(rig), std::move(draw));
+  return std::make_unique<SimSource>(*simulation, std::move(rig), std::move(draw), kAhead,
+                                     spec->threads);
 }
 
 }  // namespace parkade::sim

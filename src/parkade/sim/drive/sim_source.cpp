@@ -2,20 +2,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/sim/drive/sim_source.hpp"
 
+#include <algorithm>
 #include <condition_variable>
-#include <deque>
 #include <exception>
 #include <limits>
+#include <map>
 #include <mutex>
+#include <optional>
+#include <string>
 #include <thread>
 #include <utility>
+#include <vector>
+
+#include "parkade/sim/render/parallel.hpp"
 
 namespace parkade::sim {
 
 class SimSource::Ahead {
  public:
-  Ahead(FrameFunction draw, int count, std::size_t capacity)
-      : draw_(std::move(draw)), count_(count), capacity_(capacity) {}
+  Ahead(FrameFunction draw, int count, int capacity, int threads)
+      : draw_(std::move(draw)), count_(count), capacity_(capacity), threads_wanted_(threads) {}
 
   ~Ahead() {
     {
@@ -23,18 +29,25 @@ class SimSource::Ahead {
       stop_ = true;
     }
     changed_.notify_all();
-    if (thread_.joinable()) thread_.join();
+    for (std::thread& thread : threads_) thread.join();
   }
 
   // Waits for the next frame set.
   Result<FrameSet> take() {
     // Started by the first reader: a source that is only asked for its info draws nothing.
-    if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
+    while (static_cast<int>(threads_.size()) < threads_wanted_) {
+      threads_.emplace_back([this] { run(); });
+    }
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return !ready_.empty(); });
-    Result<FrameSet> frame = std::move(ready_.front());
-    // A failure stays at the front: every later call gets it again.
-    if (frame) ready_.pop_front();
+    changed_.wait(lock, [this] { return ready_.count(next_taken_) != 0; });
+    const auto at = ready_.find(next_taken_);
+    Result<FrameSet> frame = std::move(at->second);
+    if (frame) {
+      ready_.erase(at);
+      ++next_taken_;
+    } else {
+      at->second = frame.error();  // a failure stays: every later call gets it again
+    }
     lock.unlock();
     changed_.notify_all();
     return frame;
@@ -42,16 +55,18 @@ class SimSource::Ahead {
 
  private:
   void run() {
-    for (int index = 0; index < count_; ++index) {
-      Result<FrameSet> frame = guarded(index);
-      const bool failed = !frame.ok();
-      std::unique_lock lock(mutex_);
-      changed_.wait(lock, [this] { return stop_ || ready_.size() < capacity_; });
-      if (stop_) return;
-      ready_.push_back(std::move(frame));
+    std::optional<KeepToThread> keep;
+    if (threads_wanted_ > 1) keep.emplace();
+    std::unique_lock lock(mutex_);
+    while (!stop_ && next_drawn_ < count_) {
+      const int index = next_drawn_++;
       lock.unlock();
+      Result<FrameSet> frame = guarded(index);
+      lock.lock();
+      if (!frame.ok()) next_drawn_ = count_;  // none after a failure
+      changed_.wait(lock, [&] { return stop_ || index < next_taken_ + capacity_; });
+      ready_.emplace(index, std::move(frame));
       changed_.notify_all();
-      if (failed) return;
     }
   }
 
@@ -65,17 +80,20 @@ class SimSource::Ahead {
   }
 
   FrameFunction draw_;
-  int count_;
-  std::size_t capacity_;
+  const int count_;
+  const int capacity_;
+  const int threads_wanted_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<Result<FrameSet>> ready_;
+  std::map<int, Result<FrameSet>> ready_;  // by index
+  int next_drawn_ = 0;
+  int next_taken_ = 0;
   bool stop_ = false;
-  std::thread thread_;
+  std::vector<std::thread> threads_;
 };
 
 SimSource::SimSource(std::shared_ptr<const Simulation> simulation, Rig rig, FrameFunction draw,
-                     int ahead)
+                     int ahead, int threads)
     : simulation_(std::move(simulation)), rig_(std::move(rig)) {
   info_.name = simulation_->spec().name();
   info_.start_ns = kSimStartNs;
@@ -85,7 +103,7 @@ SimSource::SimSource(std::shared_ptr<const Simulation> simulation, Rig rig, Fram
   if (draw) {
     info_.num_frame_sets = static_cast<int>(simulation_->frameTimes().size());
     ahead_ = std::make_unique<Ahead>(std::move(draw), info_.num_frame_sets,
-                                     static_cast<std::size_t>(std::max(1, ahead)));
+                                     std::max({1, ahead, threads}), std::max(1, threads));
   }
 }
 

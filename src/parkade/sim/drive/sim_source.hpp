@@ -12,7 +12,7 @@
 
 namespace parkade::sim {
 
-/// Draws the frame set of an index, from 0; called in ascending order from one thread.
+/// Draws the frame set of an index, from 0; called in ascending order by each thread that draws.
 using FrameFunction = std::function<Result<FrameSet>(int index)>;
 
 /// A drive as a stream of measurements: inertial samples, wheels, pictures, in the order of time.
@@ -21,9 +21,10 @@ using FrameFunction = std::function<Result<FrameSet>(int index)>;
 class SimSource : public SensorSource {
  public:
   /// Without a frame function no pictures come. rig: the cameras that it draws, as the reader is
-  /// told of them. `ahead`: frame sets that wait drawn, at most.
+  /// told of them. `ahead`: frame sets that wait drawn, at most (not less than threads). `threads`
+  /// draw, a frame set each: more than one call the function at the same time.
   SimSource(std::shared_ptr<const Simulation> simulation, Rig rig, FrameFunction draw,
-            int ahead = 3);
+            int ahead = 3, int threads = 1);
   ~SimSource() override;
   SimSource(const SimSource&) = delete;
   SimSource& operator=(const SimSource&) = delete;
@@ -34,7 +35,7 @@ class SimSource : public SensorSource {
   [[nodiscard]] const Simulation& simulation() const { return *simulation_; }
 
  private:
-  class Ahead;  // the background thread and its queue
+  class Ahead;  // the background threads and their queue
 
   std::shared_ptr<const Simulation> simulation_;
   Rig rig_;

@@ -101,6 +101,47 @@ TEST(SimSource, DrawsAFewAheadAndNoMore) {
   EXPECT_LE(drawn, 4);
 }
 
+TEST(SimSource, FrameSetsOfSeveralThreadsComeInOrder) {
+  const auto simulation = simulate("sim:paper/test1?duration=5");
+  const FrameFunction blank = blankFrames(simulation);
+  SimSource source(
+      simulation, simulation->toldRig(),
+      [blank](int index) {
+        // Every third takes longest: the ones after it are done first.
+        std::this_thread::sleep_for(std::chrono::milliseconds(index % 3 == 0 ? 3 : 0));
+        return blank(index);
+      },
+      2, 3);
+  int frames = 0;
+  for (const SensorEvent& event : readAll(source)) {
+    if (const auto* set = std::get_if<FrameSet>(&event)) {
+      EXPECT_EQ(set->index, frames++);
+    }
+  }
+  EXPECT_EQ(frames, 50);
+}
+
+TEST(SimSource, WhatWasDrawnBeforeAFailureComesFirst) {
+  const auto simulation = simulate("sim:paper/test1?duration=5");
+  const FrameFunction blank = blankFrames(simulation);
+  SimSource source(
+      simulation, simulation->toldRig(),
+      [blank](int index) -> Result<FrameSet> {
+        if (index == 7) return Error{"no light"};
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        return blank(index);
+      },
+      3, 2);
+  int frames = 0;
+  Result<std::optional<SensorEvent>> event = source.next();
+  for (; event.ok(); event = source.next()) {
+    frames += std::holds_alternative<FrameSet>(**event) ? 1 : 0;
+  }
+  EXPECT_EQ(frames, 7);
+  EXPECT_EQ(event.error().message, "no light");
+  EXPECT_FALSE(source.next().ok());
+}
+
 TEST(SimSource, AFailureEndsTheStreamAndStays) {
   const auto simulation = simulate("sim:paper/test1?duration=2");
   SimSource source(simulation, simulation->toldRig(),

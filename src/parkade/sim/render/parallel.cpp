@@ -92,11 +92,18 @@ class Workers {
   bool ending_ = false;
 };
 
+thread_local bool keeps_to_thread = false;
+
 }  // namespace
+
+KeepToThread::KeepToThread() : before_(std::exchange(keeps_to_thread, true)) {}
+KeepToThread::~KeepToThread() {
+  keeps_to_thread = before_;
+}
 
 void parallelFor(int threads, std::size_t count, const std::function<void(std::size_t)>& body) {
   static Workers workers;
-  if (threads <= 1 || count <= 1 || workers.taken.exchange(true)) {
+  if (threads <= 1 || count <= 1 || keeps_to_thread || workers.taken.exchange(true)) {
     for (std::size_t i = 0; i < count; ++i) body(i);
     return;
   }

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -25,6 +26,16 @@ TEST(ParallelFor, AnInnerLoopStaysOnItsThread) {
   std::atomic<int> calls = 0;
   parallelFor(2, 4, [&](std::size_t) { parallelFor(2, 5, [&](std::size_t) { ++calls; }); });
   EXPECT_EQ(calls, 20);
+}
+
+TEST(ParallelFor, KeepsToAThreadThatAsksForIt) {
+  const std::thread::id own = std::this_thread::get_id();
+  std::atomic<int> elsewhere = 0;
+  {
+    const KeepToThread keep;
+    parallelFor(3, 1000, [&](std::size_t) { elsewhere += std::this_thread::get_id() != own; });
+  }
+  EXPECT_EQ(elsewhere, 0);
 }
 
 TEST(ParallelFor, PassesOnWhatABodyThrowsAndGoesOnWorking) {
