@@ -6,10 +6,11 @@
 #include <cmath>
 
 #include "parkade/core/check.hpp"
+#include "parkade/sim/render/parallel.hpp"
 
 namespace parkade::sim {
 
-RayTable::RayTable(const Camera& camera, int grid, const Eigen::Vector2d& offset_px)
+RayTable::RayTable(const Camera& camera, int grid, const Eigen::Vector2d& offset_px, int threads)
     : width_(camera.width()),
       height_(camera.height()),
       grid_(grid),
@@ -21,10 +22,12 @@ RayTable::RayTable(const Camera& camera, int grid, const Eigen::Vector2d& offset
   const int tiles = tiles_x_ * tiles_y_;
   packets_.resize(static_cast<std::size_t>(tiles) * packetsPerTile());
   cones_.resize(static_cast<std::size_t>(tiles));
-  for (int tile = 0; tile < tiles; ++tile) {
-    fillTile(camera, tile, offset_px);
-  }
-  fillPixels(camera);
+  parallelFor(threads, static_cast<std::size_t>(tiles),
+              [&](std::size_t tile) { fillTile(camera, static_cast<int>(tile), offset_px); });
+  spread_.resize(static_cast<std::size_t>(width_) * height_);
+  axis_cosine_.resize(spread_.size(), 0.0F);
+  parallelFor(threads, static_cast<std::size_t>(height_),
+              [&](std::size_t y) { fillRow(camera, static_cast<int>(y)); });
 }
 
 std::vector<std::int32_t> RayTable::makeSlots() const {
@@ -84,27 +87,23 @@ void RayTable::fillTile(const Camera& camera, int tile, const Eigen::Vector2d& o
   }
 }
 
-void RayTable::fillPixels(const Camera& camera) {
-  spread_.resize(static_cast<std::size_t>(width_) * height_);
-  axis_cosine_.resize(spread_.size(), 0.0F);
+void RayTable::fillRow(const Camera& camera, int y) {
   const double usual = 1.0 / camera.focalLength();
-  for (int y = 0; y < height_; ++y) {
-    for (int x = 0; x < width_; ++x) {
-      const std::size_t i = static_cast<std::size_t>(y) * width_ + x;
-      Eigen::Vector3d center;
-      Eigen::Vector3d right;
-      Eigen::Vector3d down;
-      double angle = usual;
-      if (camera.unproject({x, y}, center)) {
-        axis_cosine_[i] = static_cast<float>(center.normalized().z());
-        if (camera.unproject({x + 0.5, y}, right) && camera.unproject({x, y + 0.5}, down)) {
-          const double a = 2.0 * (right.normalized() - center.normalized()).norm();
-          const double b = 2.0 * (down.normalized() - center.normalized()).norm();
-          angle = std::sqrt(a * b);
-        }
+  for (int x = 0; x < width_; ++x) {
+    const std::size_t i = static_cast<std::size_t>(y) * width_ + x;
+    Eigen::Vector3d center;
+    Eigen::Vector3d right;
+    Eigen::Vector3d down;
+    double angle = usual;
+    if (camera.unproject({x, y}, center)) {
+      axis_cosine_[i] = static_cast<float>(center.normalized().z());
+      if (camera.unproject({x + 0.5, y}, right) && camera.unproject({x, y + 0.5}, down)) {
+        const double a = 2.0 * (right.normalized() - center.normalized()).norm();
+        const double b = 2.0 * (down.normalized() - center.normalized()).norm();
+        angle = std::sqrt(a * b);
       }
-      spread_[i] = static_cast<float>(angle / grid_);
     }
+    spread_[i] = static_cast<float>(angle / grid_);
   }
 }
 

@@ -31,7 +31,7 @@ class RayTable {
   };
 
   /// grid: samples per pixel along each axis, 1 or 2. offset_px moves all samples (sub-frames).
-  RayTable(const Camera& camera, int grid, const Eigen::Vector2d& offset_px);
+  RayTable(const Camera& camera, int grid, const Eigen::Vector2d& offset_px, int threads = 1);
 
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
@@ -66,7 +66,7 @@ class RayTable {
  private:
   [[nodiscard]] std::vector<std::int32_t> makeSlots() const;
   void fillTile(const Camera& camera, int tile, const Eigen::Vector2d& offset_px);
-  void fillPixels(const Camera& camera);
+  void fillRow(const Camera& camera, int y);
 
   int width_;
   int height_;

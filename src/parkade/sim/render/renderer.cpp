@@ -33,7 +33,8 @@ BakedLight timedBake(const Scene& scene, const StaticTracer& tracer, const Rende
 struct Renderer::CameraTables {
   Camera camera;
   RayTable picture;
-  RayTable centers;
+  std::optional<RayTable> other_centers;  ///< where the picture's samples are not the centers
+  [[nodiscard]] const RayTable& centers() const { return other_centers ? *other_centers : picture; }
   std::vector<RayTable> sub_frames;
   std::vector<float> lens_share;
 };
@@ -52,12 +53,15 @@ Renderer::~Renderer() = default;
 
 int Renderer::addCamera(const Camera& camera) {
   const int grid = options_.fast ? 1 : 2;
-  auto tables = std::make_unique<CameraTables>(CameraTables{
-      camera, RayTable(camera, grid, {0.0, 0.0}), RayTable(camera, 1, {0.0, 0.0}), {}, {}});
+  const int threads = options_.threads;
+  auto tables = std::make_unique<CameraTables>(
+      CameraTables{camera, RayTable(camera, grid, {0.0, 0.0}, threads), {}, {}, {}});
+  if (grid > 1) tables->other_centers.emplace(camera, 1, Eigen::Vector2d(0.0, 0.0), threads);
   tables->lens_share = sensor_.lensShare(tables->picture.axisCosines());
   if (options_.sensor.motion_blur > 1) {
     for (int k = 0; k < 4; ++k) {
-      tables->sub_frames.emplace_back(camera, 1, Eigen::Vector2d(k % 2 - 0.5, k / 2 - 0.5) * 0.5);
+      tables->sub_frames.emplace_back(camera, 1, Eigen::Vector2d(k % 2 - 0.5, k / 2 - 0.5) * 0.5,
+                                      threads);
     }
   }
   cameras_.push_back(std::move(tables));
@@ -137,7 +141,7 @@ cv::Mat Renderer::render(int camera, const CameraMotion& motion, double t,
 
 TruthImages Renderer::renderTruth(int camera, const SE3& T_world_cam, const Moment& moment) const {
   Truth truth;
-  traceTruth(setupFor(moment), tables(camera).centers, T_world_cam, truth);
+  traceTruth(setupFor(moment), tables(camera).centers(), T_world_cam, truth);
   TruthImages images;
   images.labels = cv::Mat(truth.height, truth.width, CV_8UC1, truth.labels.data()).clone();
   images.instances = cv::Mat(truth.height, truth.width, CV_32SC1, truth.instances.data()).clone();
