@@ -6,12 +6,14 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 #include "parkade/core/log.hpp"
 #include "parkade/semantics/class_map.hpp"
 #include "parkade/semantics/zone_text_reader.hpp"
 #include "parkade/types/level_frame.hpp"
+#include "parkade/types/text_evidence.hpp"
 
 namespace parkade {
 namespace {
@@ -22,6 +24,9 @@ struct Seen {
   std::size_t camera = 0;
   double height_px = 0.0;
 };
+
+// Readings of one piece of worn paint repeat their errors: doubtful ones must not add up.
+constexpr double kLikely = 0.5;
 
 double certainty(const std::vector<TextReading>& readings) {
   for (const TextReading& reading : readings) {
@@ -40,12 +45,14 @@ struct PaintedNumberFrontEnd::Impl {
   std::optional<Eigen::Vector3d> last_place = std::nullopt;
   /// Log-odds that numbers are upright for who enters a slot; that is usual.
   double upright = 2.0;
+  bool looked = false;  ///< at a number, in this frame set
 
-  [[nodiscard]] std::vector<Seen> bestSeen(const FrameSet& frames, const BevViews& views,
+  [[nodiscard]] std::vector<Seen> bestSeen(const std::vector<PaintedNumber>& numbers,
+                                           const FrameSet& frames, const BevViews& views,
                                            const SemanticFrame& frame,
                                            const SE3& T_level_vehicle) const {
     std::vector<Seen> all;
-    for (const PaintedNumber& number : findPaintedNumbers(frame, options.numbers)) {
+    for (const PaintedNumber& number : numbers) {
       // From elsewhere a car may hide what the stitched picture shows.
       const std::size_t c = views.indexAt(frame.labels.geometry, number.center);
       if (c >= std::min(rig.cameras.size(), frames.images.size()) || frames.images[c].empty()) {
@@ -58,8 +65,14 @@ struct PaintedNumberFrontEnd::Impl {
     }
     std::stable_sort(all.begin(), all.end(),
                      [](const Seen& a, const Seen& b) { return a.height_px > b.height_px; });
-    all.resize(std::min(all.size(), static_cast<std::size_t>(options.max_reads)));
     return all;
+  }
+
+  [[nodiscard]] cv::Mat straighten(const Seen& seen, const FrameSet& frames,
+                                   const SE3& T_level_vehicle) const {
+    const RigCamera& eye = rig.cameras[seen.camera];
+    return straightenNumber(seen.number, frames.images[seen.camera], eye.camera,
+                            T_level_vehicle * eye.T_vehicle_cam);
   }
 
   // Reads it both ways round until it is known which is right.
@@ -81,6 +94,24 @@ struct PaintedNumberFrontEnd::Impl {
     upright = std::clamp(upright + std::clamp(step, -kStep, kStep), -kMost, kMost);
     return enters ? entering : leaving;
   }
+
+  Status readSlots(const FrameSet& frames, const BevViews& views, const SE3& T_level_vehicle,
+                   SemanticFrame& frame);
+  /// A painted speed limit by all its readings.
+  struct Limit {
+    Eigen::Vector3d p_odom;
+    std::optional<Eigen::Vector3d> read_from = std::nullopt;  ///< the car's place
+    int readings = 0;
+    TextEvidence text{false};
+  };
+  std::vector<Limit> limits = {};
+  std::vector<std::string> limit_values = {};
+  Limit& limitAt(const Eigen::Vector3d& p_odom);
+  Result<std::vector<TextReading>> readTurned(std::size_t object, const FrameSet& frames,
+                                              const BevViews& views, const SE3& T_level_vehicle,
+                                              const SemanticFrame& frame);
+  Status readLimits(const FrameSet& frames, const BevViews& views, const PoseEstimate& odometry,
+                    const SE3& T_level_vehicle, SemanticFrame& frame);
 };
 
 PaintedNumberFrontEnd::PaintedNumberFrontEnd(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -98,32 +129,105 @@ Result<std::unique_ptr<PaintedNumberFrontEnd>> PaintedNumberFrontEnd::create(
   Result<ZoneTextReader> reader = ZoneTextReader::load(*path);
   if (!reader) return reader.error();
   masks.resize(rig.cameras.size());
-  return std::unique_ptr<PaintedNumberFrontEnd>(new PaintedNumberFrontEnd(
-      std::make_unique<Impl>(Impl{options, rig, std::move(masks), std::move(reader).value()})));
+  auto impl =
+      std::make_unique<Impl>(Impl{options, rig, std::move(masks), std::move(reader).value()});
+  std::istringstream values(options.limits);
+  for (std::string value; values >> value;) impl->limit_values.push_back(value);
+  return std::unique_ptr<PaintedNumberFrontEnd>(new PaintedNumberFrontEnd(std::move(impl)));
+}
+
+Status PaintedNumberFrontEnd::Impl::readSlots(const FrameSet& frames, const BevViews& views,
+                                              const SE3& T_level_vehicle, SemanticFrame& frame) {
+  std::vector<Seen> all =
+      bestSeen(findPaintedNumbers(frame, options.numbers), frames, views, frame, T_level_vehicle);
+  all.resize(std::min(all.size(), static_cast<std::size_t>(options.max_reads)));
+  for (const Seen& seen : all) {
+    Result<std::vector<TextReading>> readings = read(straighten(seen, frames, T_level_vehicle));
+    if (!readings) return readings.error();
+    if (certainty(*readings) < kLikely) continue;
+    frame.objects[seen.number.object].text = readings->front().text;
+    SlotObservation& slot = frame.slots[*seen.number.slot];
+    slot.number = std::move(readings).value();
+    slot.number_place = seen.number.center;
+  }
+  looked = looked || !all.empty();
+  return {};
+}
+
+PaintedNumberFrontEnd::Impl::Limit& PaintedNumberFrontEnd::Impl::limitAt(
+    const Eigen::Vector3d& p_odom) {
+  constexpr double kSame = 1.5;  // m
+  const auto known = std::find_if(limits.begin(), limits.end(), [&](const Limit& limit) {
+    return (limit.p_odom - p_odom).norm() < kSame;
+  });
+  if (known != limits.end()) return *known;
+  limits.push_back({p_odom});
+  return limits.back();
+}
+
+// A limit may face any way: read at many turns, that in which it is surest counts.
+Result<std::vector<TextReading>> PaintedNumberFrontEnd::Impl::readTurned(
+    std::size_t object, const FrameSet& frames, const BevViews& views, const SE3& T_level_vehicle,
+    const SemanticFrame& frame) {
+  constexpr int kTurns = 12;
+  std::vector<TextReading> surest;
+  for (int k = 0; k < kTurns; ++k) {
+    const double angle = 2.0 * M_PI * k / kTurns;
+    const auto limit = findPaintedLimit(frame, object, {std::cos(angle), std::sin(angle)});
+    if (!limit) break;
+    const std::vector<Seen> seen = bestSeen({*limit}, frames, views, frame, T_level_vehicle);
+    if (seen.empty()) break;
+    auto readings = reader.read(straighten(seen.front(), frames, T_level_vehicle), options.letters);
+    if (!readings) return readings;
+    std::erase_if(*readings, [&](const TextReading& reading) {
+      return std::find(limit_values.begin(), limit_values.end(), reading.text) ==
+             limit_values.end();
+    });
+    if (certainty(*readings) > certainty(surest)) surest = std::move(readings).value();
+  }
+  return surest;
+}
+
+Status PaintedNumberFrontEnd::Impl::readLimits(const FrameSet& frames, const BevViews& views,
+                                               const PoseEstimate& odometry,
+                                               const SE3& T_level_vehicle, SemanticFrame& frame) {
+  constexpr int kReadings = 12;   // of one limit are enough
+  constexpr double kKnown = 0.9;  // probability
+  const SE3 T_odom_level = odometry.T_odom_vehicle * T_level_vehicle.inverse();
+  for (std::size_t i = 0; i < frame.objects.size(); ++i) {
+    ObjectObservation& object = frame.objects[i];
+    if (object.semantic_class != SemanticClass::kSpeedLimitPaint) continue;
+    Limit& limit = limitAt(T_odom_level * object.position);
+    const Eigen::Vector3d place = odometry.T_odom_vehicle.translation();
+    const bool moved =
+        !limit.read_from || (place - *limit.read_from).norm() >= 2.0 * options.distance_m;
+    if (moved && limit.readings < kReadings) {
+      auto readings = readTurned(i, frames, views, T_level_vehicle, frame);
+      if (!readings) return readings.error();
+      if (certainty(*readings) >= kLikely) {
+        limit.read_from = place;
+        ++limit.readings;
+        limit.text.add(*readings);
+      }
+    }
+    const TextReading best = limit.text.best();
+    object.text = best.probability >= kKnown ? best.text : "";
+  }
+  return {};
 }
 
 Status PaintedNumberFrontEnd::read(const FrameSet& frames, const BevViews& views,
                                    const PoseEstimate& odometry, SemanticFrame& frame) {
   Impl& m = *impl_;
   const Eigen::Vector3d place = odometry.T_odom_vehicle.translation();
-  if (m.last_place && (place - *m.last_place).norm() < m.options.distance_m) return {};
   const SE3 T_level_vehicle = levelFrom(frame.attitude);
-  for (const Seen& seen : m.bestSeen(frames, views, frame, T_level_vehicle)) {
-    m.last_place = place;
-    const RigCamera& eye = m.rig.cameras[seen.camera];
-    const cv::Mat patch = straightenNumber(seen.number, frames.images[seen.camera], eye.camera,
-                                           T_level_vehicle * eye.T_vehicle_cam);
-    Result<std::vector<TextReading>> readings = m.read(patch);
-    if (!readings) return readings.error();
-    // Readings of one piece of worn paint repeat their errors: doubtful ones must not add up.
-    constexpr double kLikely = 0.5;
-    if (certainty(*readings) < kLikely) continue;
-    frame.objects[seen.number.object].text = readings->front().text;
-    SlotObservation& slot = frame.slots[seen.number.slot];
-    slot.number = std::move(readings).value();
-    slot.number_place = seen.number.center;
-  }
-  return {};
+  Status done = m.readLimits(frames, views, odometry, T_level_vehicle, frame);
+  if (!done) return done;
+  if (m.last_place && (place - *m.last_place).norm() < m.options.distance_m) return {};
+  m.looked = false;
+  done = m.readSlots(frames, views, T_level_vehicle, frame);
+  if (m.looked) m.last_place = place;
+  return done;
 }
 
 }  // namespace parkade

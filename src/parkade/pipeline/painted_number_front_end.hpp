@@ -21,16 +21,18 @@ struct PaintedNumberFrontEndOptions {
   bool enabled = true;
   std::string reader;
   std::string letters = "0123456789";
+  std::string limits = "5 8 10 15 20 25 30 40 50";
   double distance_m = 0.3;
   int max_reads = 3;
   PaintedNumberOptions numbers;
 
   void visit(OptionVisitor& v) {
-    v.field("enabled", enabled, "Whether numbers painted in slots are read.");
+    v.field("enabled", enabled, "Whether numbers painted in slots and speed limits are read.");
     v.field("reader", reader, "Network that reads them; empty: the one that comes along.");
     v.field(
         "letters", letters,
         "What numbers are made of: letters look like digits. Empty: all that the network knows.");
+    v.field("limits", limits, "What painted speed limits may say.");
     v.field("distance_m", distance_m, "m", "The car moves this far between two readings.", 0.0,
             10.0);
     v.field("max_reads", max_reads, "count", "Numbers that are read each time, best seen first.", 1,
@@ -39,9 +41,10 @@ struct PaintedNumberFrontEndOptions {
   }
 };
 
-/// Reads the numbers painted in slots from the cameras' own pictures, which are finer than the
-/// stitched one near the car. A garage's numbers all face the same way, who enters or who leaves a
-/// slot: which, the readings tell together. Not thread-safe.
+/// Reads the numbers painted in slots, and painted speed limits, from the cameras' own pictures,
+/// which are finer than the stitched one near the car. A garage's numbers all face the same way,
+/// who enters or who leaves a slot: which, the readings tell together. Limits are read
+/// whichever way they face. Not thread-safe.
 class PaintedNumberFrontEnd {
  public:
   /// Null where it is switched off, or where Parkade's own reader is not installed (which is

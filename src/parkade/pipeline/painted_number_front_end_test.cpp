@@ -78,6 +78,24 @@ TEST_F(PaintedNumberDrive, FindsOutThatNumbersFaceWhoLeaves) {
   }
 }
 
+TEST_F(PaintedNumberDrive, ReadsASpeedLimitWhicheverWayItFaces) {
+  for (const double turn : {0.0, 1.3, 3.2}) {
+    options_.limits = "15 47";
+    const auto front_end = create();
+    ASSERT_TRUE(front_end) << front_end.error().message;
+    NumberedSlot limit;
+    limit.ring = 0.72;
+    limit.turn = turn;
+    int read = 0;
+    for (const SemanticFrame& frame : pass(**front_end, limit, 3.0)) {
+      if (frame.objects[0].text.empty()) continue;
+      ++read;
+      EXPECT_EQ(frame.objects[0].text, "47") << turn;
+    }
+    EXPECT_GE(read, 3) << turn;
+  }
+}
+
 TEST_F(PaintedNumberDrive, SwitchedOffAndWrongFiles) {
   options_.enabled = false;
   auto front_end = create();

@@ -22,6 +22,7 @@ struct NumberedSlot {
   Eigen::Vector2d center{1.5, 3.0};
   double turn = 0.0;    ///< rad, of the slot about the number's middle
   bool leaves = false;  ///< painted for who leaves the slot
+  double ring = 0.0;    ///< m, radius of a ring around it, which makes it a speed limit; 0: none
 
   /// In the slot's axes: to the right, as seen from the entrance, and into it.
   [[nodiscard]] Eigen::Vector2d right() const { return {std::cos(turn), std::sin(turn)}; }
@@ -31,6 +32,8 @@ struct NumberedSlot {
   }
 
   [[nodiscard]] bool inked(const Eigen::Vector2d& p) const {
+    const double far = (p - center).norm();
+    if (far < ring && far > 0.86 * ring) return true;
     constexpr std::array<const char*, 7> kText = {"   #  #####", "  ##      #", " # #     # ",
                                                   "#  #    #  ", "#####  #   ", "   #   #   ",
                                                   "   #   #   "};
@@ -60,7 +63,19 @@ struct NumberedSlot {
     const double y = 0.5 * kHeight;
     object.outline = {at(-x, -y), at(x, -y), at(x, y), at(-x, y)};
     frame.objects = {object};
+    if (ring > 0.0) asLimit(frame);
     return frame;
+  }
+
+  void asLimit(SemanticFrame& frame) const {
+    frame.slots.clear();
+    ObjectObservation& object = frame.objects.front();
+    object.semantic_class = SemanticClass::kSpeedLimitPaint;
+    object.outline.clear();
+    for (int k = 0; k < 16; ++k) {
+      const double angle = 2.0 * M_PI * k / 16;
+      object.outline.push_back(at(ring * std::cos(angle), ring * std::sin(angle)));
+    }
   }
 
   /// The floor that a pixel shows; false where it shows none.

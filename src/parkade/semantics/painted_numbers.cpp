@@ -76,13 +76,31 @@ std::vector<PaintedNumber> findPaintedNumbers(const SemanticFrame& frame,
     const SlotObservation& around = frame.slots[*slot];
     PaintedNumber number;
     number.object = i;
-    number.slot = *slot;
+    number.slot = slot;
     number.right = (around.corners[1] - around.corners[0]).normalized();
     if (!measure(frame.labels, object.outline, number)) continue;
     if (number.height < options.min_height_m || number.height > options.max_height_m) continue;
     numbers.push_back(number);
   }
   return numbers;
+}
+
+std::optional<PaintedNumber> findPaintedLimit(const SemanticFrame& frame, std::size_t object,
+                                              const Eigen::Vector2d& up) {
+  const ObjectObservation& limit = frame.objects.at(object);
+  if (limit.semantic_class != SemanticClass::kSpeedLimitPaint || limit.outline.empty()) {
+    return std::nullopt;
+  }
+  PaintedNumber number;
+  number.object = object;
+  number.center = limit.position.head<2>();
+  number.right = {up.y(), -up.x()};
+  // Figures are about half as high as the ring and reach nearly as far as its inner edge.
+  const double ring = (limit.outline.front() - number.center).norm();
+  number.radius = 0.75 * ring;
+  number.width = 1.1 * ring;
+  number.height = 0.95 * ring;
+  return number;
 }
 
 double seenHeight(const PaintedNumber& number, const Camera& camera, const cv::Mat& mask,
@@ -108,6 +126,38 @@ double seenHeight(const PaintedNumber& number, const Camera& camera, const cv::M
   return std::min(along, across / number.width * number.height);
 }
 
+namespace {
+
+// Gives what lies farther from the middle (px) the colour of the floor just within.
+void clearBeyond(double radius, cv::Mat& patch) {
+  const auto distance = [&](int u, int v) {
+    return std::hypot(u - 0.5 * patch.cols, v - 0.5 * patch.rows);
+  };
+  std::array<std::vector<float>, 3> rim;
+  for (int v = 0; v < patch.rows; ++v) {
+    for (int u = 0; u < patch.cols; ++u) {
+      if (std::abs(distance(u, v) - radius) > 1.0) continue;
+      for (int k = 0; k < 3; ++k)
+        rim[static_cast<std::size_t>(k)].push_back(patch.at<cv::Vec3f>(v, u)[k]);
+    }
+  }
+  if (rim[0].empty()) return;
+  cv::Vec3f floor;
+  for (int k = 0; k < 3; ++k) {
+    auto& values = rim[static_cast<std::size_t>(k)];
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    floor[k] = *middle;
+  }
+  for (int v = 0; v < patch.rows; ++v) {
+    for (int u = 0; u < patch.cols; ++u) {
+      if (distance(u, v) > radius) patch.at<cv::Vec3f>(v, u) = floor;
+    }
+  }
+}
+
+}  // namespace
+
 cv::Mat straightenNumber(const PaintedNumber& number, const cv::Mat& image, const Camera& camera,
                          const SE3& T_level_cam) {
   // Letters take about half of a zone marker's face, which the reader has learnt from.
@@ -126,6 +176,7 @@ cv::Mat straightenNumber(const PaintedNumber& number, const cv::Mat& image, cons
     Eigen::Vector2d pixel;
     return camera.project(T_cam_level * onGround(p), pixel) ? pixel : kNoPixel;
   });
+  if (number.radius > 0.0) clearBeyond(number.radius * scale, patch);
   const int half_width = std::clamp(static_cast<int>(0.5 * scale * width), 4, 48);
   const int half_height = std::clamp(static_cast<int>(0.5 * scale * height), 4, 20);
   normaliseTextPatch(patch, {kZonePatchWidth / 2 - half_width, kZonePatchHeight / 2 - half_height,
