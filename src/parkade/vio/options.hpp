@@ -11,7 +11,7 @@ struct VioWindowOptions {
   int recent_frames = 3;
   int max_iterations = 2;
   int max_landmarks = 320;
-  double huber_px = 2.0;
+  double huber_px = 0.3;
   double outlier_sigma = 3.5;
 
   void visit(OptionVisitor& v) {
@@ -99,8 +99,8 @@ struct VioStartUpOptions {
 struct VioCalibrationOptions {
   bool refine_extrinsics = false;
   bool refine_time_offset = false;
-  double position_sigma = 0.01;
-  double rotation_sigma_deg = 0.2;
+  double position_sigma = 0.005;
+  double rotation_sigma_deg = 0.1;
   double time_sigma = 0.005;
 
   void visit(OptionVisitor& v) {

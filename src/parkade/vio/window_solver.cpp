@@ -132,22 +132,28 @@ SolveSummary solveAtRest(Window& window, const std::vector<WindowFeature*>& feat
   SolveSummary summary;
   FactorSelection selection = FactorSelection::all(window);
   LinearSystem system(options.huber, options.still);
+  // Without images nothing tells where the cameras sit: only gravity moves of the globals, else the
+  // prior would pull the cameras away from what the window's pictures have shown.
+  constexpr Eigen::Index kGravity = 2;
+  const auto begin = kState * static_cast<Eigen::Index>(first_free);
   const auto free_rows =
-      kState * static_cast<Eigen::Index>(window.frames.size() - first_free) + window.globalSize();
+      kState * static_cast<Eigen::Index>(window.frames.size() - first_free) + kGravity;
   summary.initial_cost = system.linearise(window, selection);
   for (; summary.iterations < options.max_iterations; ++summary.iterations) {
     system.reduce(0.0);
     const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> llt(
-        system.reducedH().bottomRightCorner(free_rows, free_rows));
+        system.reducedH().block(begin, begin, free_rows, free_rows));
     if (llt.info() != Eigen::Success) return summary;
-    const Eigen::VectorXd step = -llt.solve(system.reducedB().tail(free_rows));
+    const Eigen::VectorXd step = -llt.solve(system.reducedB().segment(begin, free_rows));
     if (!step.allFinite()) return summary;
     for (std::size_t i = first_free; i < window.frames.size(); ++i) {
       window.frames[i].apply(
           step.segment<kState>(kState * static_cast<Eigen::Index>(i - first_free)));
     }
-    window.applyGlobals(step.tail(window.globalSize()));
-    const double promised = -0.5 * system.gradient().tail(free_rows).dot(step);
+    Eigen::VectorXd globals = Eigen::VectorXd::Zero(window.globalSize());
+    globals.head<kGravity>() = step.tail<kGravity>();
+    window.applyGlobals(globals);
+    const double promised = -0.5 * system.gradient().segment(begin, free_rows).dot(step);
     summary.final_cost = system.linearise(window, selection);
     if (promised < options.min_decrease) break;
   }
