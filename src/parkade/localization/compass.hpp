@@ -16,8 +16,8 @@ struct CompassOptions {
   double window_deg = 3.0;
   double min_share = 0.5;
   double reference_m = 10.0;
-  double reference_sigma_deg = 0.15;
-  double sigma_deg = 0.25;
+  double reference_sigma_deg = 1.0;
+  double sigma_deg = 0.8;
 
   void visit(OptionVisitor& v) {
     v.field("enable", enable, "Take the rows of a garage for parallel or square to each other.");
