@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Parkade authors
 // SPDX-License-Identifier: Apache-2.0
 // The floor's look and light, sixteen groups of samples at once.
+#include <algorithm>
+#include <cstring>
 #include <numbers>
 
 #include "parkade/sim/render/floor_rays_kernel.hpp"
@@ -11,7 +13,7 @@ namespace {
 
 constexpr float kInvPi = std::numbers::inv_pi_v<float>;
 constexpr int kGroups = FloorBlock::kGroups;
-static_assert(FloorRays::kRays == kGroups &&
+static_assert(FloorRays::kRays == kGroups && kLightLanes == kGroups &&
               FloorRays::kMaxTaps * kMaxSamples <= FloorBlock::kPoints);
 
 /// The places where a group looks at the floor; returns the sum of its hits.
@@ -39,15 +41,19 @@ Eigen::Vector3f Shader::floorLux(const GridPlaces& places, int k, const Moment& 
   const BakedPoint* const upper = &light_.floor[static_cast<std::size_t>(places.cell[k])];
   const BakedPoint* const lower = upper + light_.floor_grid.nx;
   const std::array<const BakedPoint*, 4> points{upper, upper + 1, lower, lower + 1};
-  Eigen::Vector3f lux = Eigen::Vector3f::Zero();
+  Eigen::Vector4f lux = Eigen::Vector4f::Zero();
   for (std::size_t i = 0; i < 4; ++i) {
     float weight = places.weights[i][k];
     if (!moment.lamp_brightness.empty()) {
       weight *= flickerFactor(points[i]->flicker_lamp, points[i]->flicker_share, moment);
     }
-    lux += weight * points[i]->lux;
+    // The whole point in one go; its last four bytes, the flickering lamp, are left out at the end.
+    static_assert(sizeof(BakedPoint) == sizeof(Eigen::Vector4f));
+    Eigen::Vector4f point;
+    std::memcpy(point.data(), points[i], sizeof(point));
+    lux += weight * point;
   }
-  return lux;
+  return lux.head<3>();
 }
 
 void Shader::shadeFloor(const FloorGroups& floor, int samples, const Moment& moment) const {
@@ -82,8 +88,7 @@ void Shader::shadeFloor(const FloorGroups& floor, int samples, const Moment& mom
   // 2. What the floor looks like there.
   FloorBlock block;
   block.count = floor.count;
-  alignas(64) std::array<float, kGroups> x;
-  alignas(64) std::array<float, kGroups> y;
+  LightPoints points;
   int end = 0;
   for (int k = 0; k < floor.count; ++k) {
     const auto at = static_cast<std::size_t>(k);
@@ -93,18 +98,20 @@ void Shader::shadeFloor(const FloorGroups& floor, int samples, const Moment& mom
     Surface& out = *floor.out[at];
     out.position = addPoints(group, rays, k, end, block) / static_cast<float>(group.count);
     out.normal << rays.normal_x[k], rays.normal_y[k], rays.normal_z[k];
-    x[at] = out.position.x();
-    y[at] = out.position.y();
+    points.x[k] = out.position.x();
+    points.y[k] = out.position.y();
+    points.z[k] = out.position.z();
   }
   block.first[static_cast<std::size_t>(floor.count)] = end;
-  for (auto k = static_cast<std::size_t>(floor.count); k < kGroups; ++k) {
-    block.footprint[k] = block.footprint[0];
-    x[k] = x[0];
-    y[k] = y[0];
+  for (int k = floor.count; k < kGroups; ++k) {
+    block.footprint[static_cast<std::size_t>(k)] = block.footprint[0];
+    points.x[k] = points.x[0];
+    points.y[k] = points.y[0];
+    points.z[k] = points.z[0];
   }
   const FloorGrid& grid = light_.floor_grid;
   GridPlaces places;
-  placeInGrid({grid.min.x(), grid.min.y(), grid.cell, grid.nx, grid.ny}, x.data(), y.data(),
+  placeInGrid({grid.min.x(), grid.min.y(), grid.cell, grid.nx, grid.ny}, points.x, points.y,
               places);
   for (int k = 0; k < floor.count; ++k) {
     const BakedPoint* const upper = &light_.floor[static_cast<std::size_t>(places.cell[k])];
@@ -115,16 +122,32 @@ void Shader::shadeFloor(const FloorGroups& floor, int samples, const Moment& mom
   scene_.floor->means(block, looks);
 
   // 3. Light.
+  unsigned reach = 0;
+  for (int k = 0; k < floor.count; ++k) {
+    reach |= moment.reach_grid.at(points.x[k], points.y[k]);
+  }
+  alignas(64) std::array<float, kGroups> share;
+  alignas(64) std::array<float, kGroups> beam;
+  const bool shadowed = (reach & ReachGrid::kShadow) != 0U;
+  const bool beamed = (reach & ReachGrid::kBeams) != 0U;
+  if (shadowed) {
+    moment.floorShares(points.x, points.y, share.data());
+  }
+  if (beamed) {
+    std::copy_n(rays.normal_x, kGroups, points.normal_x);
+    std::copy_n(rays.normal_y, kGroups, points.normal_y);
+    std::copy_n(rays.normal_z, kGroups, points.normal_z);
+    moment.beamLux(reach, points, beam.data());
+  }
   for (int k = 0; k < floor.count; ++k) {
     const auto at = static_cast<std::size_t>(k);
     Surface& out = *floor.out[at];
     Eigen::Vector3f lux = floorLux(places, k, moment);
-    const unsigned reach = moment.reach_grid.at(x[at], y[at]);
-    if ((reach & ReachGrid::kShadow) != 0U) {
-      lux *= moment.floorShade(x[at], y[at]);
+    if (shadowed) {
+      lux *= share[at];
     }
-    if ((reach & ReachGrid::kBeams) != 0U) {
-      lux += moment.beamLux(out.position, out.normal);
+    if (beamed) {
+      lux += kBeamColour * beam[at];
     }
     const Eigen::Vector3f albedo(looks.red[at], looks.green[at], looks.blue[at]);
     out.radiance = albedo.cwiseProduct(lux) * kInvPi;

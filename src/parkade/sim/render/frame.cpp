@@ -21,7 +21,8 @@ constexpr float kFaint = 0.06F;  // with one sample a pixel, floors that mirror 
 
 /// A tile on its way from samples to pixels.
 struct TileWork {
-  std::vector<SampleGroup> groups;
+  std::vector<SampleGroup> groups;  ///< room for all; their number follows
+  int group_count = 0;
   std::vector<Surface> surfaces;  ///< of the groups
   /// The pixels in blocks: sixteen rays that follow each other then run alike.
   struct Pixel {
@@ -30,9 +31,21 @@ struct TileWork {
     int end = 0;                                    ///< of its groups
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();  ///< of samples that hit nothing
   };
-  std::vector<Pixel> pixels;
+  std::array<Pixel, kTilePixels> pixels;
+  int pixel_count = 0;
   std::array<std::vector<MirrorRay>, kMirrorPlaces> floor;
   std::vector<MirrorRay> other;
+
+  void clear(int samples) {
+    groups.resize(static_cast<std::size_t>(kTilePixels) * samples);
+    surfaces.resize(groups.size());
+    group_count = 0;
+    pixel_count = 0;
+    for (std::vector<MirrorRay>& rays : floor) {
+      rays.clear();
+    }
+    other.clear();
+  }
 };
 
 class FrameTracer {
@@ -50,7 +63,7 @@ class FrameTracer {
   [[nodiscard]] const Eigen::Vector3f& eye() const { return rays_.eye(); }
   /// Samples on the same surface are shaded as one.
   void addGroups(const SurfaceHit* hits, const Eigen::Vector3f* directions, TileWork::Pixel& pixel,
-                 std::vector<SampleGroup>& groups) const;
+                 TileWork& work) const;
   /// The pixel without mirror images; adds its mirror ray, if it needs one.
   void finishPixel(const TileWork::Pixel& pixel, int first_group, TileWork& work, Radiance& out,
                    ReflectionBuffer* mirror) const;
@@ -65,7 +78,7 @@ class FrameTracer {
 };
 
 void FrameTracer::addGroups(const SurfaceHit* hits, const Eigen::Vector3f* directions,
-                            TileWork::Pixel& pixel, std::vector<SampleGroup>& groups) const {
+                            TileWork::Pixel& pixel, TileWork& work) const {
   const Shader& shader = *setup_.shader;
   const Moment& moment = *setup_.moment;
   const float spread = table_.spread(pixel.x, pixel.y);
@@ -80,7 +93,8 @@ void FrameTracer::addGroups(const SurfaceHit* hits, const Eigen::Vector3f* direc
       }
       continue;
     }
-    SampleGroup& group = groups.emplace_back();
+    SampleGroup& group = work.groups[static_cast<std::size_t>(work.group_count++)];
+    group.count = 1;
     group.hits = hits;
     group.directions = directions;
     group.eye = &eye();
@@ -116,17 +130,20 @@ void FrameTracer::finishPixel(const TileWork::Pixel& pixel, int first_group, Til
     const SampleGroup& group = work.groups[static_cast<std::size_t>(i)];
     const Surface& surface = work.surfaces[static_cast<std::size_t>(i)];
     sum += static_cast<float>(group.count) * surface.radiance;
+    if (mirror == nullptr || (!surface.is_floor && surface.roughness >= kSharp)) {
+      continue;
+    }
     const float cosine = -group.direction(0).dot(surface.normal);
     const float weight = mirrorReflectance(surface.specular, surface.roughness, cosine) *
                          static_cast<float>(group.count) / static_cast<float>(samples_);
-    if (weight > best && (surface.is_floor || (weight > kFaintest && surface.roughness < kSharp))) {
+    if (weight > best && (surface.is_floor || weight > kFaintest)) {
       main = &surface;
       best = weight;
       direction = &group.direction(0);
     }
   }
   out.pixels[index] = sum / static_cast<float>(samples_);
-  if (main == nullptr || mirror == nullptr) {
+  if (main == nullptr) {
     return;
   }
   if (!main->is_floor) {
@@ -151,12 +168,7 @@ void FrameTracer::shadeTile(int tile, const TileSamples& in, Radiance& out,
   const int left = tile % table_.tilesX() * kTile;
   const int top = tile / table_.tilesX() * kTile;
   thread_local TileWork work;
-  work.groups.clear();
-  work.pixels.clear();
-  for (std::vector<MirrorRay>& rays : work.floor) {
-    rays.clear();
-  }
-  work.other.clear();
+  work.clear(samples_);
   for (int i = 0; i < kTilePixels; ++i) {
     const int block = i / (kBlock * kBlock);
     const int in_x = block % (kTile / kBlock) * kBlock + i % kBlock;
@@ -164,18 +176,19 @@ void FrameTracer::shadeTile(int tile, const TileSamples& in, Radiance& out,
     if (left + in_x >= out.width || top + in_y >= out.height) {
       continue;
     }
-    TileWork::Pixel& pixel = work.pixels.emplace_back();
+    TileWork::Pixel& pixel = work.pixels[static_cast<std::size_t>(work.pixel_count++)];
+    pixel.sum.setZero();
     pixel.x = left + in_x;
     pixel.y = top + in_y;
     const int first = (in_y * kTile + in_x) * samples_;
-    addGroups(in.hits.data() + first, in.directions.data() + first, pixel, work.groups);
-    pixel.end = static_cast<int>(work.groups.size());
+    addGroups(in.hits.data() + first, in.directions.data() + first, pixel, work);
+    pixel.end = work.group_count;
   }
-  work.surfaces.resize(work.groups.size());
-  setup_.shader->shade(work.groups.data(), static_cast<int>(work.groups.size()), samples_,
-                       *setup_.moment, work.surfaces.data());
+  setup_.shader->shade(work.groups.data(), work.group_count, samples_, *setup_.moment,
+                       work.surfaces.data());
   int first_group = 0;
-  for (const TileWork::Pixel& pixel : work.pixels) {
+  for (int i = 0; i < work.pixel_count; ++i) {
+    const TileWork::Pixel& pixel = work.pixels[static_cast<std::size_t>(i)];
     finishPixel(pixel, first_group, work, out, mirror);
     first_group = pixel.end;
   }

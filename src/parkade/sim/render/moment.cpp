@@ -16,11 +16,7 @@ namespace parkade::sim {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr float kBeamCandela = 4000.0F;  // dipped, below the cut-off
-constexpr float kBeamReach = 30.0F;      // m
-constexpr float kBeamEdge = 0.7F;        // cosine of the lobe's half angle
 constexpr float kBeamWedge = 0.95F;  // rad: the lobe's half angle on the plan, with room for tilt
-constexpr float kDarkest = 0.12F;    // light left below the middle of a car
 
 /// A cone from an eye.
 struct SightCone {
@@ -99,65 +95,27 @@ bool Moment::showsIn(const Eigen::Vector3f& eye, const Eigen::Vector3f& axis,
   return false;
 }
 
-float Moment::floorShade(float x, float y) const {
-  float shade = 1.0F;
-  if ((reach_grid.at(x, y) & ReachGrid::kShadow) == 0) {
-    return shade;
-  }
+void Moment::floorShares(const float* x, const float* y, float* share) const {
+  std::fill_n(share, kLightLanes, 1.0F);
+  const auto [left, right] = std::minmax_element(x, x + kLightLanes);
+  const auto [low, high] = std::minmax_element(y, y + kLightLanes);
   for (const PlacedObject& object : objects) {
-    const Eigen::Vector2f d(x - object.shadow_center.x(), y - object.shadow_center.y());
-    if (d.squaredNorm() > object.shadow_reach2) {
-      continue;
+    const FloorShadow& shadow = object.shadow;
+    const float dx = std::max({*left - shadow.x, shadow.x - *right, 0.0F});
+    const float dy = std::max({*low - shadow.y, shadow.y - *high, 0.0F});
+    if (dx * dx + dy * dy <= shadow.reach2) {
+      castShadow(shadow, x, y, share);
     }
-    const float along = std::abs(d.dot(object.shadow_axis)) - object.shadow_half.x();
-    const float across = std::abs(object.shadow_axis.x() * d.y() - object.shadow_axis.y() * d.x()) -
-                         object.shadow_half.y();
-    const float reach = object.shadow_height;
-    if (along > reach || across > reach) {
-      continue;
-    }
-    const float outside = std::sqrt(std::max(along, 0.0F) * std::max(along, 0.0F) +
-                                    std::max(across, 0.0F) * std::max(across, 0.0F));
-    const float inside = std::min(std::max(along, across), 0.0F);  // negative below the object
-    // Half dark at the edge, dark 0.4 m further in, free at its height's distance.
-    const float depth = std::clamp(-inside / 0.4F, 0.0F, 1.0F);
-    const float fade = std::max(0.0F, 1.0F - outside / reach);
-    const float dark = 0.5F * fade * fade * fade + 0.5F * depth * (2.0F - depth);
-    shade *= 1.0F - (1.0F - kDarkest) * dark;
   }
-  return shade;
 }
 
-Eigen::Vector3f Moment::beamLux(const Eigen::Vector3f& p, const Eigen::Vector3f& n) const {
-  float lux = 0.0F;
-  const unsigned reaching = reach_grid.at(p.x(), p.y()) & ReachGrid::kBeams;
-  if (reaching == 0) {
-    return Eigen::Vector3f::Zero();
-  }
+void Moment::beamLux(unsigned reach, const LightPoints& points, float* lux) const {
+  std::fill_n(lux, kLightLanes, 0.0F);
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    if ((reaching & ReachGrid::bitOf(i)) == 0) {
-      continue;
+    if ((reach & ReachGrid::bitOf(i)) != 0) {
+      addBeam(beams[i], points, lux);
     }
-    const Beam& beam = beams[i];
-    const Eigen::Vector3f d = p - beam.position;
-    const float ahead = d.dot(beam.direction);
-    const float d2 = d.squaredNorm();
-    if (ahead <= 0.0F || ahead * ahead < kBeamEdge * kBeamEdge * d2 ||
-        d2 > kBeamReach * kBeamReach) {
-      continue;
-    }
-    const float inverse = 1.0F / std::sqrt(std::max(d2, 0.04F));
-    const float cos_surface = -d.dot(n) * inverse;
-    if (cos_surface <= 0.0F) {
-      continue;
-    }
-    // A wide lobe, cut off above the horizon as a dipped beam is.
-    const float lobe = std::max(ahead * inverse - kBeamEdge, 0.0F) / (1.0F - kBeamEdge);
-    const float up = d.z() * inverse;
-    const float cut = std::clamp((0.03F - up) / 0.06F, 0.08F, 1.0F);
-    lux += kBeamCandela * lobe * lobe * lobe * cut * cos_surface * inverse * inverse;
   }
-  return Eigen::Vector3f(1.0F, 0.97F, 0.9F) * lux;
 }
 
 MomentMaker::MomentMaker(const Scene& scene, RTCDevice device, const BakedLight& light,
@@ -211,15 +169,21 @@ void MomentMaker::place(Moment& moment, int mesh, const SE3& T_world_object, std
     object.vertex_lux.push_back(ProbeGrid::evaluate(light_.probes.cubeAt(p), n) *
                                 shape.mesh.openness[i]);
   }
-  object.shadow_center = object.center_world.head<2>();
-  const Eigen::Vector2f axis = object.R_world_object.col(0).head<2>();
-  object.shadow_axis = axis.norm() > 1e-3F ? Eigen::Vector2f(axis.normalized())
-                                           : Eigen::Vector2f(Eigen::Vector2f::UnitX());
+  const Eigen::Vector2f along = object.R_world_object.col(0).head<2>();
+  const Eigen::Vector2f axis = along.norm() > 1e-3F ? Eigen::Vector2f(along.normalized())
+                                                    : Eigen::Vector2f(Eigen::Vector2f::UnitX());
   const Eigen::Vector3f half = 0.5F * (shape.box_max - shape.box_min);
   // Round corners and the bumpers' ground clearance make the shadow a little smaller than the box.
-  object.shadow_half = (half.head<2>().array() - 0.08F).max(0.1F);
-  object.shadow_height = std::min(half.z(), 0.8F);
-  object.shadow_reach2 = (object.shadow_half.array() + object.shadow_height).matrix().squaredNorm();
+  const Eigen::Vector2f sides = (half.head<2>().array() - 0.08F).max(0.1F);
+  const float height = std::min(half.z(), 0.8F);
+  object.shadow = {object.center_world.x(),
+                   object.center_world.y(),
+                   axis.x(),
+                   axis.y(),
+                   sides.x(),
+                   sides.y(),
+                   height,
+                   (sides.array() + height).matrix().squaredNorm()};
   moment.objects.push_back(std::move(object));
 }
 
@@ -237,21 +201,22 @@ void MomentMaker::markReach(Moment& moment) const {
       const Eigen::Vector2f center =
           grid.min + ReachGrid::kCell * Eigen::Vector2f(x + 0.5F, y + 0.5F);
       for (std::size_t i = 0; i < moment.beams.size(); ++i) {
-        const Beam& beam = moment.beams[i];
-        const Eigen::Vector2f d = center - beam.position.head<2>();
+        const BeamLight& beam = moment.beams[i];
+        const Eigen::Vector2f d = center - Eigen::Vector2f(beam.x, beam.y);
+        const Eigen::Vector2f ahead(beam.ahead_x, beam.ahead_y);
         const float distance = d.norm();
         if (distance > kBeamReach + kRadius) {
           continue;
         }
         const float wide = kBeamWedge + std::asin(std::min(1.0F, kRadius / distance));
-        if (distance < 2.0F * kRadius ||
-            d.dot(beam.direction.head<2>().normalized()) > distance * std::cos(wide)) {
+        if (distance < 2.0F * kRadius || d.dot(ahead.normalized()) > distance * std::cos(wide)) {
           cell |= ReachGrid::bitOf(i);
         }
       }
       for (const PlacedObject& object : moment.objects) {
-        const float far = std::sqrt(object.shadow_reach2) + kRadius;
-        if ((center - object.shadow_center).squaredNorm() <= far * far) {
+        const FloorShadow& shadow = object.shadow;
+        const float far = std::sqrt(shadow.reach2) + kRadius;
+        if ((center - Eigen::Vector2f(shadow.x, shadow.y)).squaredNorm() <= far * far) {
           cell |= ReachGrid::kShadow;
         }
       }
@@ -271,8 +236,10 @@ std::shared_ptr<const Moment> MomentMaker::make(double t,
         const Eigen::Vector3d lamp(0.5 * object.box_size.x(), side * 0.36 * object.box_size.y(),
                                    0.43 * object.box_size.z());
         const Eigen::Vector3d forward(1.0, 0.0, -0.05);
-        moment->beams.push_back({(T_world_object * lamp).cast<float>(),
-                                 (T_world_object.rotation() * forward.normalized()).cast<float>()});
+        const Eigen::Vector3f p = (T_world_object * lamp).cast<float>();
+        const Eigen::Vector3f ahead =
+            (T_world_object.rotation() * forward.normalized()).cast<float>();
+        moment->beams.push_back({p.x(), p.y(), p.z(), ahead.x(), ahead.y(), ahead.z()});
       }
     }
   }

@@ -13,6 +13,7 @@
 
 #include "parkade/geometry/se3.hpp"
 #include "parkade/sim/render/light_bake.hpp"
+#include "parkade/sim/render/moment_kernel.hpp"
 #include "parkade/sim/render/tracer.hpp"
 #include "parkade/sim/scene.hpp"
 
@@ -41,19 +42,11 @@ struct PlacedObject {
   std::vector<Eigen::Vector3f> vertex_lux;
   std::uint32_t instance = 0;
   SemanticClass label = SemanticClass::kVehicle;
-  // Its shadow on the floor, as a rounded rectangle:
-  Eigen::Vector2f shadow_center = Eigen::Vector2f::Zero();
-  Eigen::Vector2f shadow_axis = Eigen::Vector2f::UnitX();
-  Eigen::Vector2f shadow_half = Eigen::Vector2f::Zero();
-  float shadow_height = 1.0F;
-  float shadow_reach2 = 0.0F;  ///< m^2: no shadow beyond
+  FloorShadow shadow;
 };
 
-/// A head lamp's beam.
-struct Beam {
-  Eigen::Vector3f position = Eigen::Vector3f::Zero();
-  Eigen::Vector3f direction = Eigen::Vector3f::UnitX();
-};
+/// Colour of head lamps.
+inline const Eigen::Vector3f kBeamColour(1.0F, 0.97F, 0.9F);
 
 /// Where on the plan head lamps and shadows of objects may reach at all.
 struct ReachGrid {
@@ -86,20 +79,17 @@ struct Moment {
   std::vector<PlacedObject> objects;
   EmbreeScene scene;                   ///< instance id: index into objects; null without objects
   std::vector<float> lamp_brightness;  ///< per luminaire, 1 where steady; empty: all steady
-  std::vector<Beam> beams;
+  std::vector<BeamLight> beams;
   ReachGrid reach_grid;
 
   /// Whether anything that moves may show in a cone; its half angle in radians.
   [[nodiscard]] bool showsIn(const Eigen::Vector3f& eye, const Eigen::Vector3f& axis,
                              float half_angle) const;
-  /// How much of the floor's light at a place the objects leave.
-  [[nodiscard]] float floorShade(float x, float y) const;
-  /// Whether head lamps may bring a surface any light.
-  [[nodiscard]] bool beamsReach(const Eigen::Vector3f& p) const {
-    return (reach_grid.at(p.x(), p.y()) & ReachGrid::kBeams) != 0;
-  }
-  /// Lux that head lamps bring to a surface.
-  [[nodiscard]] Eigen::Vector3f beamLux(const Eigen::Vector3f& p, const Eigen::Vector3f& n) const;
+  /// How much of the floor's light the objects leave at kLightLanes places.
+  void floorShares(const float* x, const float* y, float* share) const;
+  /// Lux of head lamps' light (kBeamColour) at kLightLanes points; reach: what may reach any of
+  /// them (ReachGrid).
+  void beamLux(unsigned reach, const LightPoints& points, float* lux) const;
 };
 
 /// Makes moments; keeps the meshes that it has met. Thread-safe.

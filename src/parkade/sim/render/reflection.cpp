@@ -22,8 +22,6 @@ constexpr float kLampRoom = 0.4F;    // m: what hangs this far below the lamps h
 constexpr float kMirrorSpread = 0.01F;
 constexpr float kFloorMirrorSpread = 0.03F;
 
-constexpr int kPattern = 4;  // pixels a side
-
 constexpr int raysOf(MirrorDensity density) {
   return density == MirrorDensity::kQuarter ? 4 : 2;
 }
@@ -68,13 +66,6 @@ void ReflectionBuffer::reset(int w, int h) {
   stride = (w + 1) / 2 + 3;
   incoming.assign(static_cast<std::size_t>(stride) * ((h + 1) / 2), Eigen::Vector4f::Zero());
   weights.assign(static_cast<std::size_t>(w) * h, 0.0F);
-}
-
-int mirrorPlace(MirrorDensity density, int x, int y) {
-  // Bayer's matrix: its first four places lie on every second pixel of every second row.
-  constexpr std::array<int, 16> kBayer{0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
-  const int place = kBayer[static_cast<std::size_t>(y % kPattern * kPattern + x % kPattern)];
-  return place < raysOf(density) ? place : -1;
 }
 
 void makeMirrorRay(const Surface& surface, const Eigen::Vector3f& direction, float weight,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -50,7 +51,15 @@ enum class MirrorDensity : std::uint8_t {
 inline constexpr int kMirrorPlaces = 4;
 
 /// The place of a pixel in the order of those that send a floor mirror ray, or -1.
-int mirrorPlace(MirrorDensity density, int x, int y);
+inline int mirrorPlace(MirrorDensity density, int x, int y) {
+  if (((x | y) & 1) != 0) {
+    return -1;
+  }
+  // Of Bayer's matrix the even places.
+  constexpr std::array<int, 4> kPlaces{0, 2, 3, 1};
+  const int place = kPlaces[static_cast<std::size_t>((y & 2) | (x >> 1 & 1))];
+  return density == MirrorDensity::kQuarter || place < 2 ? place : -1;
+}
 
 /// The mirror ray of a surface, all but its pixel. On floors its direction is spread over the
 /// glossy lobe by the place in a pattern that repeats every 4 x 4 pixels: the mean over any such

@@ -10,21 +10,9 @@ namespace parkade::sim {
 namespace {
 
 constexpr float kInvPi = std::numbers::inv_pi_v<float>;
-constexpr int kChunk = 256;         // groups sorted together
-constexpr float kDullFrom = 0.75F;  // roughness above which no mirror image is left
+constexpr int kChunk = 256;  // groups sorted together
 
 }  // namespace
-
-float mirrorReflectance(float specular, float roughness, float cosine) {
-  if (roughness >= kDullFrom) {
-    return 0.0F;
-  }
-  const float m = 1.0F - std::min(cosine, 1.0F);
-  const float m2 = m * m;
-  const float grazing = std::max(1.0F - roughness, specular) - specular;
-  const float fade = std::min(1.0F, 3.0F * (kDullFrom - roughness) / kDullFrom);
-  return fade * (specular + grazing * m2 * m2 * m);
-}
 
 Eigen::Vector3f Shader::missed(const Eigen::Vector3f& origin,
                                const Eigen::Vector3f& direction) const {
@@ -96,7 +84,7 @@ Eigen::Vector3f Shader::textureAt(const SampleGroup& group, const MipTexture& te
   }
   const float texels = spread * group.hit(0).t * first.texels_per_metre;
   constexpr float kMagnified = 0.4F;
-  if (group.count == 1 || (one_triangle && texels < kMagnified)) {
+  if (one_triangle && texels < kMagnified) {
     // Within one texel the mean of the samples is the sample at their mean.
     Eigen::Vector2f middle = first.uv;
     for (int i = 1; i < group.count; ++i) {
@@ -134,7 +122,8 @@ float Shader::lampBrightness(const Eigen::Vector3f& p, const Moment& moment) con
   return brightness;
 }
 
-void Shader::lightUp(const SampleGroup& group, const Moment& moment, SolidGroup& solid) const {
+void Shader::lightUp(const Moment& moment, SolidGroup& solid) const {
+  const SampleGroup& group = *solid.group;
   const ShadeMaterial& material = *solid.material;
   const SurfaceHit& hit = group.hit(0);
   const Eigen::Vector3f& direction = group.direction(0);
@@ -148,9 +137,6 @@ void Shader::lightUp(const SampleGroup& group, const Moment& moment, SolidGroup&
   out.specular = material.specular;
   out.roughness = material.roughness;
   out.is_floor = false;
-  if (moment.beamsReach(out.position)) {
-    solid.lux += moment.beamLux(out.position, out.normal);
-  }
   solid.first.texels_per_metre = 0.0F;
   solid.at_once = false;
   if (material.texture == nullptr) {
@@ -167,6 +153,32 @@ void Shader::lightUp(const SampleGroup& group, const Moment& moment, SolidGroup&
     material.texture->find(solid.first.uv.x(), solid.first.uv.y(),
                            solid.spread * hit.t * solid.first.texels_per_metre, solid.texels);
     solid.texels.prefetch();
+  }
+}
+
+void Shader::addBeams(SolidGroup* solids, std::size_t count, const Moment& moment) {
+  unsigned reach = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Eigen::Vector3f& p = solids[k].out->position;
+    reach |= moment.reach_grid.at(p.x(), p.y());
+  }
+  if ((reach & ReachGrid::kBeams) == 0U) {
+    return;
+  }
+  LightPoints points;
+  for (std::size_t k = 0; k < kLightLanes; ++k) {
+    const Surface& surface = *solids[k < count ? k : 0].out;
+    points.x[k] = surface.position.x();
+    points.y[k] = surface.position.y();
+    points.z[k] = surface.position.z();
+    points.normal_x[k] = surface.normal.x();
+    points.normal_y[k] = surface.normal.y();
+    points.normal_z[k] = surface.normal.z();
+  }
+  alignas(64) std::array<float, kLightLanes> lux;
+  moment.beamLux(reach, points, lux.data());
+  for (std::size_t k = 0; k < count; ++k) {
+    solids[k].lux += kBeamColour * lux[k];
   }
 }
 
@@ -202,7 +214,7 @@ void Shader::shadeChunk(const SampleGroup* groups, int count, int samples, const
   std::array<std::array<std::uint16_t, kChunk>, kKinds> order;
   std::array<std::size_t, kKinds> end{};
   for (int i = 0; i < count; ++i) {
-    const ShadeMaterial& material = materials_[materialIndex(groups[i].hit(0), moment)];
+    const ShadeMaterial& material = materialOf(groups[i].hit(0), moment);
     const std::size_t solid = material.texture == nullptr ? kPlain : kTextured;
     const std::size_t kind = material.is_floor ? kFloor : solid;
     order[kind][end[kind]++] = static_cast<std::uint16_t>(i);
@@ -217,7 +229,7 @@ void Shader::shadeChunk(const SampleGroup* groups, int count, int samples, const
     }
     shadeFloor(floor, samples, moment);
   }
-  std::array<SolidGroup, FloorBlock::kGroups> solids;
+  std::array<SolidGroup, kLightLanes> solids;
   for (const Kind kind : {kPlain, kTextured}) {
     for (std::size_t begin = 0; begin < end[kind]; begin += solids.size()) {
       const std::size_t size = std::min(solids.size(), end[kind] - begin);
@@ -225,9 +237,10 @@ void Shader::shadeChunk(const SampleGroup* groups, int count, int samples, const
         SolidGroup& solid = solids[k];
         solid.group = &groups[order[kind][begin + k]];
         solid.out = &out[order[kind][begin + k]];
-        solid.material = &materials_[materialIndex(solid.group->hit(0), moment)];
-        lightUp(*solid.group, moment, solid);
+        solid.material = &materialOf(solid.group->hit(0), moment);
+        lightUp(moment, solid);
       }
+      addBeams(solids.data(), size, moment);
       for (std::size_t k = 0; k < size; ++k) {
         paintSolid(solids[k], moment);
       }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -94,7 +95,17 @@ struct SampleGroup {
 
 /// Reflectance of a clear coat seen at an angle: Schlick's formula, weakened by roughness at
 /// grazing angles; none for dull surfaces.
-float mirrorReflectance(float specular, float roughness, float cosine);
+inline float mirrorReflectance(float specular, float roughness, float cosine) {
+  constexpr float kDullFrom = 0.75F;  // roughness above which no mirror image is left
+  if (roughness >= kDullFrom) {
+    return 0.0F;
+  }
+  const float m = 1.0F - std::min(cosine, 1.0F);
+  const float m2 = m * m;
+  const float grazing = std::max(1.0F - roughness, specular) - specular;
+  const float fade = std::min(1.0F, 3.0F * (kDullFrom - roughness) / kDullFrom);
+  return fade * (specular + grazing * m2 * m2 * m);
+}
 
 /// The look of everything in a scene at one moment. Thread-safe.
 class Shader {
@@ -102,7 +113,7 @@ class Shader {
   Shader(const Scene& scene, const StaticTracer& tracer, const BakedLight& light);
 
   [[nodiscard]] const ShadeMaterial& materialOf(const SurfaceHit& hit, const Moment& moment) const {
-    return materials_[triangleOf(hit, moment).material];
+    return materials_[materialIndex(hit, moment)];
   }
   [[nodiscard]] const RenderTriangle& triangleOf(const SurfaceHit& hit,
                                                  const Moment& moment) const {
@@ -172,8 +183,10 @@ class Shader {
     bool at_once = false;  ///< one look-up, in texels
     MipTexture::Place texels;
   };
-  /// All but the radiance.
-  void lightUp(const SampleGroup& group, const Moment& moment, SolidGroup& solid) const;
+  /// All but the radiance and the light of head lamps.
+  void lightUp(const Moment& moment, SolidGroup& solid) const;
+  /// The light of head lamps, for up to kLightLanes groups.
+  static void addBeams(SolidGroup* solids, std::size_t count, const Moment& moment);
   /// The radiance.
   void paintSolid(const SolidGroup& solid, const Moment& moment) const;
 

@@ -15,6 +15,7 @@ set(RENDER_SOURCES
     render/light_bake.cpp
     render/light_grids.cpp
     render/moment.cpp
+    render/moment_kernel.cpp
     render/openness.cpp
     render/overhead.cpp
     render/parallel.cpp
