@@ -34,6 +34,8 @@ struct SegmentationNetwork::Impl {
   Status forward(const cv::Mat& bgr);
   [[nodiscard]] Status checkOutput(const cv::Size& size) const;
   Status run(const cv::Mat& image, cv::Mat& labels, cv::Mat& confidence);
+
+  cv::Mat slot_line;  // of the last run
 };
 
 Status SegmentationNetwork::Impl::forward(const cv::Mat& bgr) {
@@ -83,7 +85,7 @@ Status SegmentationNetwork::Impl::run(const cv::Mat& image, cv::Mat& labels, cv:
   if (image.channels() == 1) cv::cvtColor(image, bgr, cv::COLOR_GRAY2BGR);
   const Status status = forward(bgr);
   if (!status) return status;
-  decodeLogits(logits, map.classes, bgr.size(), labels, confidence);
+  decodeLogits(logits, map.classes, bgr.size(), labels, confidence, slot_line);
   return {};
 }
 
@@ -151,16 +153,22 @@ Result<BevLabels> SegmentationNetwork::segment(const BevImage& bev) {
   result.geometry = bev.geometry;
   const Status status = impl_->run(image, result.labels, result.confidence);
   if (!status) return status.error();
+  cv::Mat& slot_line = result.slot_line;
+  slot_line = impl_->slot_line.clone();
   if (padded != bev.image.size()) {
     const cv::Rect used(cv::Point(), size);
     cv::resize(result.labels(used), result.labels, bev.image.size(), 0, 0, cv::INTER_NEAREST);
     cv::resize(result.confidence(used), result.confidence, bev.image.size(), 0, 0,
                cv::INTER_NEAREST);
+    if (!slot_line.empty()) {
+      cv::resize(slot_line(used), slot_line, bev.image.size(), 0, 0, cv::INTER_NEAREST);
+    }
   }
   uniteStrokes(result.labels, bev.geometry.metres_per_px);
   const cv::Mat unseen = bev.valid == 0;
   result.labels.setTo(static_cast<int>(SemanticClass::kUnknown), unseen);
   result.confidence.setTo(0, unseen);
+  if (!slot_line.empty()) slot_line.setTo(0, unseen);
   return result;
 }
 

@@ -180,7 +180,9 @@ TEST(LabelDecoding, ProbabilitiesAreThoseOfSoftmax) {
   }
   cv::Mat labels;
   cv::Mat confidence;
-  decodeLogits(logits, classes, cv::Size(31, 9), labels, confidence);
+  cv::Mat slot_line;
+  decodeLogits(logits, classes, cv::Size(31, 9), labels, confidence, slot_line);
+  EXPECT_TRUE(slot_line.empty());
   for (int i = 0; i < 9 * 31; ++i) {
     int best = 0;
     double total = 0.0;
@@ -192,6 +194,25 @@ TEST(LabelDecoding, ProbabilitiesAreThoseOfSoftmax) {
     ASSERT_EQ(labels.data[i], static_cast<int>(classes[static_cast<std::size_t>(best)]));
     ASSERT_NEAR(confidence.data[i], 255.0 / total, 1.1);
   }
+}
+
+TEST(LabelDecoding, EvidenceOfSlotLinesIsWhatTheyLackToTheLikeliest) {
+  // Two channels mean slot lines: the better one counts.
+  const std::vector<SemanticClass> classes{SemanticClass::kFloor, SemanticClass::kSlotLine,
+                                           SemanticClass::kSlotLine};
+  const std::array<int, 4> shape{1, 3, 1, 4};
+  cv::Mat logits(4, shape.data(), CV_32F);
+  const std::array<std::array<float, 4>, 3> values = {
+      {{2.0F, 5.0F, 0.0F, 30.0F}, {1.0F, 1.0F, 3.0F, 0.0F}, {0.0F, 3.0F, -1.0F, 0.0F}}};
+  for (int c = 0; c < 3; ++c) {
+    std::copy_n(values[static_cast<std::size_t>(c)].begin(), 4, logits.ptr<float>(0, c));
+  }
+  cv::Mat labels;
+  cv::Mat confidence;
+  cv::Mat slot_line;
+  decodeLogits(logits, classes, cv::Size(4, 1), labels, confidence, slot_line);
+  const std::array<int, 4> expected{230, 205, 255, 0};
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(slot_line.data[i], expected[static_cast<std::size_t>(i)]);
 }
 
 TEST(FindModel, NamesThePlacesItLookedAt) {

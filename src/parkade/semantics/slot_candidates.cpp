@@ -50,6 +50,7 @@ class MarkPairing {
     // Left of who drives in is left of inward.
     const double width = cross(c.inward, -front);
     if (width <= 0.0) return std::nullopt;
+    if (!fitsRow(left, length) || !fitsRow(right, length)) return std::nullopt;
     const double cosine = std::abs(front.dot(c.inward)) / length;
     if (cosine > kMostSlant) return std::nullopt;
     for (const SlotMark* mark : {&left, &right}) {
@@ -68,6 +69,12 @@ class MarkPairing {
     if (!measureDepth(c)) return std::nullopt;
     tellMarking(c);
     return c;
+  }
+
+  // Faint lines make slots as wide as the others of their row.
+  [[nodiscard]] static bool fitsRow(const SlotMark& mark, double length) {
+    constexpr double kSame = 0.12;  // m
+    return !mark.isFaint() || std::abs(length - mark.row_width) < kSame;
   }
 
   // Where a line meets a side at the entrance, it runs (or its bar points) towards the other side.

@@ -38,8 +38,8 @@ struct SlotCandidate {
 };
 
 /// All pairs of marks that have a slot's size and contradict none: no mark between them, lines at
-/// the corners that turn towards each other, sides that do not both end too early. Their score is
-/// 0 yet (slot_ranking.hpp).
+/// the corners that turn towards each other, sides that do not both end too early; faint lines make
+/// slots of their row's width. Their score is 0 yet (slot_ranking.hpp).
 std::vector<SlotCandidate> pairSlotMarks(const std::vector<SlotMark>& marks,
                                          const LabelProbe& probe, const SlotOptions& options);
 

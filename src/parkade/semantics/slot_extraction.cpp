@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "parkade/core/check.hpp"
 #include "parkade/semantics/label_probe.hpp"
@@ -11,6 +12,7 @@
 #include "parkade/semantics/slot_marks.hpp"
 #include "parkade/semantics/slot_occupancy.hpp"
 #include "parkade/semantics/slot_ranking.hpp"
+#include "parkade/semantics/slot_rows.hpp"
 #include "parkade/semantics/tilt_error.hpp"
 
 namespace parkade {
@@ -63,10 +65,20 @@ std::vector<SlotObservation> extractSlots(const BevImage& bev, const BevLabels& 
   const LabelProbe probe(labels);
   const std::vector<SlotMark> marks = findSlotMarks(grey, probe, segments);
   std::vector<SlotCandidate> candidates = pairSlotMarks(marks, probe, options);
-  std::vector<SlotObservation> slots;
-  for (const SlotCandidate* slot : likelySlots(candidates, probe, options.min_confidence)) {
-    slots.push_back(observe(*slot, probe, views, sigma));
+  std::vector<const SlotCandidate*> likely = likelySlots(candidates, probe, options.min_confidence);
+  // The rows of these slots, with lines that are too worn for labels.
+  std::vector<SlotMark> all = findFaintMarks(labels, likely, marks, options.min_faint_contrast);
+  std::vector<SlotCandidate> in_rows;
+  if (!all.empty()) {
+    all.insert(all.end(), marks.begin(), marks.end());
+    in_rows = pairSlotMarks(all, probe, options);
+    for (const SlotCandidate* slot : likelySlots(in_rows, probe, options.min_confidence)) {
+      if (slot->left->isFaint() || slot->right->isFaint()) likely.push_back(slot);
+    }
+    likely = withoutOverlaps(std::move(likely));
   }
+  std::vector<SlotObservation> slots;
+  for (const SlotCandidate* slot : likely) slots.push_back(observe(*slot, probe, views, sigma));
   return slots;
 }
 

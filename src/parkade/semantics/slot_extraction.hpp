@@ -23,6 +23,7 @@ struct SlotOptions {
   double usual_depth_m = 5.0;
   double usual_parallel_depth_m = 2.2;
   double min_confidence = 0.7;
+  double min_faint_contrast = 1.0;
 
   void visit(OptionVisitor& v) {
     v.field("min_width_m", min_width_m, "m",
@@ -42,6 +43,9 @@ struct SlotOptions {
             "The same of a slot along the aisle.", 1.0, 10.0);
     v.field("min_confidence", min_confidence, "probability", "Doubtful slots are not told.", 0.0,
             1.0);
+    v.field("min_faint_contrast", min_faint_contrast, "log-odds",
+            "Worn lines beside a slot stand out so much, on average along them, over the floor.",
+            0.1, 10.0);
   }
 };
 
@@ -53,8 +57,9 @@ struct FloorSigma {
 
 /// Finds parking slots: two marks (slot_marks.hpp) whose side lines run side by side, as far apart
 /// as the standards make slots (slot_candidates.hpp), with nothing painted in between, room to
-/// drive in front and no better explanation beside them (slot_ranking.hpp). Of slots that overlap
-/// the likelier one is told. Corners lie where the lines' middles meet; their covariance holds the
+/// drive in front and no better explanation beside them (slot_ranking.hpp). Their rows are followed
+/// over lines that are too worn for labels (slot_rows.hpp). Of slots that overlap the likelier one
+/// is told. Corners lie where the lines' middles meet; their covariance holds the
 /// picture's noise and the errors of the levelling, which move both corners together. Whether a
 /// slot is free comes from the labels inside (slot_occupancy.hpp). labels must be those of bev
 /// (checked); segments from extractLines.

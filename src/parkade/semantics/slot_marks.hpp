@@ -21,6 +21,10 @@ struct SlotMark {
   double width = 0.0;                                 ///< m, of the side line
   double sigma_along = 0.0;                           ///< m, along inward, of the picture alone
   double sigma_aside = 0.0;                           ///< m, across inward, of the picture alone
+  /// m, of the entrances in its row where the line is too faint for labels (slot_rows.hpp); or 0.
+  double row_width = 0.0;
+
+  [[nodiscard]] bool isFaint() const { return row_width > 0.0; }
 };
 
 /// Marks of all slot lines among the segments, both ways along each. The side line must end at its

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "parkade/geometry/planar.hpp"
 
@@ -260,19 +261,7 @@ class SlotRanking {
     for (const SlotCandidate& c : candidates_) {
       if (c.score >= least) order.push_back(&c);
     }
-    std::stable_sort(
-        order.begin(), order.end(),
-        [](const SlotCandidate* a, const SlotCandidate* b) { return a->score > b->score; });
-    std::vector<const SlotCandidate*> chosen;
-    for (const SlotCandidate* c : order) {
-      constexpr double kOverlap = 0.25;
-      const bool taken = std::any_of(chosen.begin(), chosen.end(), [&](const SlotCandidate* other) {
-        return shareInside(c->corners, other->corners) > kOverlap ||
-               shareInside(other->corners, c->corners) > kOverlap;
-      });
-      if (!taken) chosen.push_back(c);
-    }
-    return chosen;
+    return withoutOverlaps(std::move(order));
   }
 
   std::vector<SlotCandidate>& candidates_;
@@ -281,6 +270,22 @@ class SlotRanking {
 };
 
 }  // namespace
+
+std::vector<const SlotCandidate*> withoutOverlaps(std::vector<const SlotCandidate*> slots) {
+  std::stable_sort(slots.begin(), slots.end(), [](const SlotCandidate* a, const SlotCandidate* b) {
+    return a->score > b->score;
+  });
+  std::vector<const SlotCandidate*> chosen;
+  for (const SlotCandidate* c : slots) {
+    constexpr double kOverlap = 0.25;
+    const bool taken = std::any_of(chosen.begin(), chosen.end(), [&](const SlotCandidate* other) {
+      return shareInside(c->corners, other->corners) > kOverlap ||
+             shareInside(other->corners, c->corners) > kOverlap;
+    });
+    if (!taken) chosen.push_back(c);
+  }
+  return chosen;
+}
 
 std::vector<const SlotCandidate*> likelySlots(std::vector<SlotCandidate>& candidates,
                                               const LabelProbe& probe, double min_confidence) {

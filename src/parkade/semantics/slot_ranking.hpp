@@ -17,4 +17,7 @@ namespace parkade {
 std::vector<const SlotCandidate*> likelySlots(std::vector<SlotCandidate>& candidates,
                                               const LabelProbe& probe, double min_confidence);
 
+/// Of slots that overlap the likelier one; best first.
+std::vector<const SlotCandidate*> withoutOverlaps(std::vector<const SlotCandidate*> slots);
+
 }  // namespace parkade

@@ -21,12 +21,19 @@
 
 namespace parkade {
 
+/// Steps of BevLabels::slot_line that a log-odds of one takes.
+constexpr double kSlotLinePerLogOdds = 25.0;
+
 /// The class of every pixel of a bird's-eye picture.
 struct BevLabels {
   TimeNs t_ns = 0;
   BevGeometry geometry;
   cv::Mat labels;      ///< CV_8UC1: SemanticClass; kUnknown where nothing is seen
   cv::Mat confidence;  ///< CV_8UC1: probability of that class, 255 = 1
+  /// CV_8UC1, or empty: the evidence of a slot line, whatever the label. 255 where the network says
+  /// one; less by kSlotLinePerLogOdds for each by which it holds another class likelier; at least
+  /// 0.
+  cv::Mat slot_line;
 };
 
 /// A point on the middle of a painted line, measured to a fraction of a pixel across the line.
