@@ -8,8 +8,9 @@
 #include <cmath>
 #include <functional>
 #include <optional>
-#include <sstream>
 #include <utility>
+
+#include "parkade/core/split.hpp"
 
 namespace parkade::cli {
 namespace {
@@ -122,15 +123,6 @@ Status addConditions(const PaperBenchOptions& options, const BenchDrive& base,
   if (status) status = sweepAgents(options.agents, base, kinds);
   if (!status) return status;
   return sweepCalibration(options.calib_error, base, kinds);
-}
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  std::stringstream stream(text);
-  for (std::string part; std::getline(stream, part, separator);) {
-    if (!part.empty()) parts.push_back(part);
-  }
-  return parts;
 }
 
 }  // namespace parkade::cli

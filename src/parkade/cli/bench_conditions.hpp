@@ -15,6 +15,5 @@ Status addConditions(const PaperBenchOptions& options, const BenchDrive& base,
                      std::vector<BenchDrive>& kinds);
 
 /// What stands between the separators, empty parts left out.
-std::vector<std::string> split(const std::string& text, char separator);
 
 }  // namespace parkade::cli

@@ -8,6 +8,7 @@
 
 #include "parkade/cli/bench_conditions.hpp"
 #include "parkade/cli/semantic_garages.hpp"
+#include "parkade/core/split.hpp"
 
 namespace parkade::cli {
 namespace {

@@ -25,7 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kAhead = 3;  // frame sets
 constexpr int kGroundPx = 480;
 constexpr double kGroundMetresPerPx = 0.03;  // 14.4 m across
 
@@ -168,7 +167,7 @@ class Recorder {
         return renderer_->draw(index, wanted);
       };
     }
-    sim::SimSource source(simulation_, told_rig_, std::move(draw), kAhead,
+    sim::SimSource source(simulation_, told_rig_, std::move(draw), sim::kFrameSetsAhead,
                           simulation_->spec().threads);
     ProgressPrinter progress(simulation_->spec().name());
     while (true) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "parkade/core/log.hpp"
+#include "parkade/core/split.hpp"
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
 #include "parkade/io/sequence_files.hpp"
@@ -17,17 +18,6 @@
 
 namespace parkade {
 namespace {
-
-std::vector<std::string> splitNames(const std::string& list) {
-  std::vector<std::string> names;
-  std::size_t begin = 0;
-  while (begin < list.size()) {
-    const std::size_t end = std::min(list.find(',', begin), list.size());
-    if (end > begin) names.push_back(list.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return names;
-}
 
 template <class Row>
 Result<std::vector<Row>> orderedRows(SensorTable<Row> table, bool tolerate) {
@@ -74,7 +64,7 @@ Status SequenceReader::load(const std::string& path, const SequenceReaderOptions
 
   Result<Rig> rig = readSequenceRig(*sequence);
   if (!rig) return rig.error();
-  const std::vector<std::string> names = splitNames(options.cameras);
+  const std::vector<std::string> names = split(options.cameras, ',');
   if (!names.empty()) {
     rig = rig->subset(names);
     if (!rig) return Error{fmt::format("{}: {}", path, rig.error().message)};

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <optional>
-#include <sstream>
 #include <utility>
 
 #include "parkade/core/log.hpp"
+#include "parkade/core/split.hpp"
 #include "parkade/semantics/class_map.hpp"
 #include "parkade/semantics/zone_text_reader.hpp"
 #include "parkade/types/level_frame.hpp"
@@ -131,8 +131,7 @@ Result<std::unique_ptr<PaintedNumberFrontEnd>> PaintedNumberFrontEnd::create(
   masks.resize(rig.cameras.size());
   auto impl =
       std::make_unique<Impl>(Impl{options, rig, std::move(masks), std::move(reader).value()});
-  std::istringstream values(options.limits);
-  for (std::string value; values >> value;) impl->limit_values.push_back(value);
+  impl->limit_values = split(options.limits, ' ');
   return std::unique_ptr<PaintedNumberFrontEnd>(new PaintedNumberFrontEnd(std::move(impl)));
 }
 

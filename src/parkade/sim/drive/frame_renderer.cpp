@@ -9,6 +9,7 @@
 
 #include "parkade/core/check.hpp"
 #include "parkade/core/random.hpp"
+#include "parkade/core/split.hpp"
 #include "parkade/sim/world/scene_builder.hpp"
 
 namespace parkade::sim {
@@ -140,8 +141,6 @@ cv::Mat grayOf(const cv::Mat& bgr) {
 
 namespace {
 
-constexpr int kAhead = 3;  // frame sets
-
 // Draws the chosen cameras.
 class ChosenFrames {
  public:
@@ -173,16 +172,6 @@ class ChosenFrames {
   bool gray_;
 };
 
-std::vector<std::string> splitNames(const std::string& text) {
-  std::vector<std::string> names;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t comma = std::min(text.find(',', begin), text.size());
-    if (comma > begin) names.push_back(text.substr(begin, comma - begin));
-    begin = comma + 1;
-  }
-  return names;
-}
-
 }  // namespace
 
 Result<std::unique_ptr<SimSource>> openSimSource(const std::string& address,
@@ -196,7 +185,7 @@ Result<std::unique_ptr<SimSource>> openSimSource(const std::string& address,
   // Stamps leave the simulator on the inertial unit's clock.
   for (RigCamera& camera : rig.cameras) camera.time_offset_ns = 0;
   if (!options.cameras.empty()) {
-    Result<Rig> subset = rig.subset(splitNames(options.cameras));
+    Result<Rig> subset = rig.subset(split(options.cameras, ','));
     if (!subset) return subset.error();
     rig = std::move(subset).value();
   }
@@ -216,7 +205,7 @@ Result<std::unique_ptr<SimSource>> openSimSource(const std::string& address,
                                                        std::move(chosen), options.gray);
     draw = [frames](int index) { return frames->draw(index); };
   }
-  return std::make_unique<SimSource>(*simulation, std::move(rig), std::move(draw), kAhead,
+  return std::make_unique<SimSource>(*simulation, std::move(rig), std::move(draw), kFrameSetsAhead,
                                      spec->threads);
 }
 

@@ -15,6 +15,9 @@ namespace parkade::sim {
 /// Draws the frame set of an index, from 0; called in ascending order by each thread that draws.
 using FrameFunction = std::function<Result<FrameSet>(int index)>;
 
+/// Enough that a reader seldom waits, few enough to be kept in memory.
+constexpr int kFrameSetsAhead = 3;
+
 /// A drive as a stream of measurements: inertial samples, wheels, pictures, in the order of time.
 /// Pictures are drawn ahead in the background, a few at a time. The same simulation gives the same
 /// bytes for any number of threads.
@@ -24,7 +27,7 @@ class SimSource : public SensorSource {
   /// told of them. `ahead`: frame sets that wait drawn, at most (not less than threads). `threads`
   /// draw, a frame set each: more than one call the function at the same time.
   SimSource(std::shared_ptr<const Simulation> simulation, Rig rig, FrameFunction draw,
-            int ahead = 3, int threads = 1);
+            int ahead = kFrameSetsAhead, int threads = 1);
   ~SimSource() override;
   SimSource(const SimSource&) = delete;
   SimSource& operator=(const SimSource&) = delete;
