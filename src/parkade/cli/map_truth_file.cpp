@@ -14,6 +14,7 @@
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
 #include "parkade/io/trajectory_io.hpp"
+#include "parkade/mapping/frame_evidence.hpp"
 #include "parkade/sim/world/garage_json.hpp"
 #include "parkade/sim/world/plan_image.hpp"
 
@@ -118,7 +119,7 @@ MapTruth truthOf(const sim::Garage& garage) {
   }
   addAreas(garage, truth);
   for (const sim::Marking& marking : garage.markings) {
-    if (!isFloorObject(marking.semantic_class)) continue;
+    if (roleOf(marking.semantic_class) != LayerRole::kRoadMarker) continue;
     const bool has_text = marking.semantic_class == SemanticClass::kArrow ||
                           marking.semantic_class == SemanticClass::kSpeedLimitPaint ||
                           isText(marking);

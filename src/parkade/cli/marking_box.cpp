@@ -8,21 +8,6 @@
 
 namespace parkade::cli {
 
-bool isFloorObject(SemanticClass semantic_class) {
-  switch (semantic_class) {
-    case SemanticClass::kArrow:
-    case SemanticClass::kSpeedLimitPaint:
-    case SemanticClass::kStopLine:
-    case SemanticClass::kCrossing:
-    case SemanticClass::kSpeedBump:
-    case SemanticClass::kPaintedNumber:
-    case SemanticClass::kWheelStop:
-      return true;
-    default:
-      return false;
-  }
-}
-
 Eigen::Vector2d middleOf(const sim::Marking& marking,
                          const std::vector<std::vector<Eigen::Vector2d>>& polygons) {
   const SE2 T_garage_marking(marking.heading, marking.position);

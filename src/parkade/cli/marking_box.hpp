@@ -9,9 +9,6 @@
 
 namespace parkade::cli {
 
-/// Whether a class of paint or fittings on the floor is told as objects, not as lines.
-bool isFloorObject(SemanticClass semantic_class);
-
 /// Middle of the box around some of a marking's polygons along its own axes, in the garage's
 /// frame. Of an arrow, whose head may lie to one side, on the line of its shaft.
 Eigen::Vector2d middleOf(const sim::Marking& marking,

@@ -7,6 +7,7 @@
 
 #include "parkade/cli/marking_box.hpp"
 #include "parkade/geometry/se2.hpp"
+#include "parkade/mapping/frame_evidence.hpp"
 #include "parkade/semantics/marking_pieces.hpp"
 #include "parkade/sim/world/parked_cars.hpp"
 
@@ -56,7 +57,8 @@ class TruthCollector {
   }
 
   void addMarking(const sim::Marking& marking) {
-    if (!isFloorObject(marking.semantic_class) || !isNear(marking.position)) return;
+    if (roleOf(marking.semantic_class) != LayerRole::kRoadMarker || !isNear(marking.position))
+      return;
     if (marking.semantic_class != SemanticClass::kWheelStop) {
       addPaint(marking, marking.polygons);
       return;
