@@ -219,9 +219,7 @@ double ObjectRegistry::existence(const Track& track) const {
   const double l =
       track.existence.logOdds(isUpright(track.semantic_class) ? options_.upright : options_.paint);
   if (track.semantic_class != SemanticClass::kPillar) return l;
-  constexpr double kEven = 0.5;  // the prior is in l
-  return l + track.in_views.logOdds(
-                 {options_.pillar_views.detection, options_.pillar_views.false_alarm, kEven});
+  return l + options_.pillar_views.logOdds(track.in_views);
 }
 
 bool ObjectRegistry::exists(const Track& track) const {
@@ -232,10 +230,8 @@ bool ObjectRegistry::exists(const Track& track) const {
     return false;
   }
   if (viewed_ && isSign(track.semantic_class)) {
-    const SignViewOptions& o = options_.sign_views;
-    constexpr double kEven = 0.5;
-    if (track.in_views.hits < o.min_hits ||
-        track.in_views.logOdds({o.detection, o.false_alarm, kEven}) <= 0.0) {
+    const ViewExistenceOptions& o = options_.sign_views;
+    if (track.in_views.hits < o.min_hits || o.logOdds(track.in_views) <= 0.0) {
       return false;
     }
   }

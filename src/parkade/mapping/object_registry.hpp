@@ -17,37 +17,25 @@
 
 namespace parkade {
 
-/// What cameras' own pictures say of pillars.
-struct PillarViewOptions {
-  double detection = 0.8;
-  double false_alarm = 0.3;
-  int min_hits = 2;
-
-  void visit(OptionVisitor& v) {
-    v.field("detection", detection, "probability",
-            "That a picture that looks at a pillar shows one there.", 0.01, 0.99);
-    v.field("false_alarm", false_alarm, "probability",
-            "That it shows one where none is: errors repeat, and places lie off.", 0.01, 0.99);
-    v.field("min_hits", min_hits, "count",
-            "Pillars that fewer pictures showed are not told, where there are such pictures.", 0,
-            1000);
-  }
-};
-
-/// What they say of signs.
-struct SignViewOptions {
+/// What cameras' own pictures say of things that stand or hang there.
+struct ViewExistenceOptions {
   double detection = 0.5;
   double false_alarm = 0.15;
   int min_hits = 3;
 
   void visit(OptionVisitor& v) {
     v.field("detection", detection, "probability",
-            "That a picture that looks at a sign shows one there.", 0.01, 0.99);
+            "That a picture that looks at one shows one there.", 0.01, 0.99);
     v.field("false_alarm", false_alarm, "probability",
-            "That it shows one where none is: errors repeat.", 0.01, 0.99);
+            "That it shows one where none is: errors repeat, and places lie off.", 0.01, 0.99);
     v.field("min_hits", min_hits, "count",
-            "Signs that fewer pictures showed are not told, where there are such pictures.", 0,
+            "Those that fewer pictures showed are not told, where there are such pictures.", 0,
             1000);
+  }
+  /// By pictures with and without it; whether one had been expected counts elsewhere.
+  [[nodiscard]] double logOdds(const Existence& in_views) const {
+    constexpr double kEven = 0.5;
+    return in_views.logOdds({detection, false_alarm, kEven});
   }
 };
 
@@ -61,8 +49,8 @@ struct ObjectRegistryOptions {
   double duplicate_overlap = 0.3;
   ExistenceOptions paint{0.4, 0.1, 0.1};
   ExistenceOptions upright{0.6, 0.25, 0.1};  // smears beside pillars look alike again and again
-  PillarViewOptions pillar_views;
-  SignViewOptions sign_views;
+  ViewExistenceOptions pillar_views{0.8, 0.3, 2};
+  ViewExistenceOptions sign_views{0.5, 0.15, 3};
 
   void visit(OptionVisitor& v) {
     v.field("association_sigma_m", association_sigma_m, "m",
