@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "parkade/semantics/zone_marker_views.hpp"
+
 namespace parkade {
 SignFollower::SignFollower(const SignFollowerOptions& options)
     : options_(options), guides_(options.guide), limits_(options.limit) {}
@@ -14,21 +16,11 @@ Status SignFollower::add(const cv::Mat& labels, const cv::Mat& image, const cv::
   if (!options_.enabled) return {};
   for (const SemanticClass sign : {SemanticClass::kGuideSign, SemanticClass::kSpeedLimitSign}) {
     const bool limit = sign == SemanticClass::kSpeedLimitSign;
-    std::vector<ZoneMarkerView> views;
-    for (const ZoneMarkerSight& sight :
-         findSigns(labels, image, mask, camera, T_up_cam.rotation(), sign, options_.faces)) {
-      if (sight.cut) continue;
-      ZoneMarkerView view{T_up_cam.translation(), sight.ray_level,    sight.sigma,
-                          sight.height_ratio,     sight.height_sigma, {}};
-      for (const ZoneMarkerFace& face : sight.faces) {
-        if (!limit) break;
-        Result<std::vector<TextReading>> readings = reader.read(face.patch, "0123456789");
-        if (!readings) return readings.error();
-        view.readings.push_back(std::move(readings).value());
-      }
-      views.push_back(std::move(view));
-    }
-    (limit ? limits_ : guides_).add(views, t_ns);
+    const Result<std::vector<ZoneMarkerView>> views =
+        viewsOf(findSigns(labels, image, mask, camera, T_up_cam.rotation(), sign, options_.faces),
+                T_up_cam.translation(), limit ? &reader : nullptr, "0123456789");
+    if (!views) return views.error();
+    (limit ? limits_ : guides_).add(*views, t_ns);
   }
   return {};
 }

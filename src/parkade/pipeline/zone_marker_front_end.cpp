@@ -9,6 +9,7 @@
 #include "parkade/geometry/se2.hpp"
 #include "parkade/semantics/level_views.hpp"
 #include "parkade/semantics/segmentation.hpp"
+#include "parkade/semantics/zone_marker_views.hpp"
 #include "parkade/semantics/zone_text_reader.hpp"
 #include "parkade/types/level_frame.hpp"
 
@@ -26,9 +27,9 @@ struct ZoneMarkerFrontEnd::Impl {
   std::vector<LevelView> views = {};  // of the last look
 
   // What one camera sees, in the odometry's frame turned so that z points up.
-  Result<std::vector<ZoneMarkerView>> viewsOf(std::size_t camera, const cv::Mat& image,
-                                              const SE3& T_up_vehicle, const SE3& T_level_vehicle,
-                                              TimeNs t_ns) {
+  Result<std::vector<ZoneMarkerView>> viewsFrom(std::size_t camera, const cv::Mat& image,
+                                                const SE3& T_up_vehicle, const SE3& T_level_vehicle,
+                                                TimeNs t_ns) {
     const RigCamera& eye = rig.cameras[camera];
     Result<ViewLabels> labels = network.segmentView(image);
     if (!labels) return labels.error();
@@ -38,21 +39,9 @@ struct ZoneMarkerFrontEnd::Impl {
     const Status signs_seen =
         signs.add(labels->labels, image, masks[camera], eye.camera, T_up_cam, t_ns, reader);
     if (!signs_seen) return signs_seen.error();
-    std::vector<ZoneMarkerView> markers;
-    for (const ZoneMarkerSight& sight :
-         findZoneMarkers(labels->labels, image, masks[camera], eye.camera, T_up_cam.rotation(),
-                         options.faces)) {
-      if (sight.cut) continue;  // its middle is not seen
-      ZoneMarkerView view{T_up_cam.translation(), sight.ray_level,    sight.sigma,
-                          sight.height_ratio,     sight.height_sigma, {}};
-      for (const ZoneMarkerFace& face : sight.faces) {
-        Result<std::vector<TextReading>> readings = reader.read(face.patch);
-        if (!readings) return readings.error();
-        view.readings.push_back(std::move(readings).value());
-      }
-      markers.push_back(std::move(view));
-    }
-    return markers;
+    return viewsOf(findZoneMarkers(labels->labels, image, masks[camera], eye.camera,
+                                   T_up_cam.rotation(), options.faces),
+                   T_up_cam.translation(), &reader);
   }
 };
 
@@ -98,7 +87,7 @@ Result<std::vector<ObjectObservation>> ZoneMarkerFrontEnd::look(const FrameSet& 
     if (camera >= frames.images.size() || frames.images[camera].empty()) continue;
     ++looked;
     Result<std::vector<ZoneMarkerView>> views =
-        m.viewsOf(camera, frames.images[camera], T_up_vehicle, T_level_vehicle, frames.t_ns);
+        m.viewsFrom(camera, frames.images[camera], T_up_vehicle, T_level_vehicle, frames.t_ns);
     if (!views) return views.error();
     m.tracker.add(*views, frames.t_ns);
   }

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "parkade/core/result.hpp"
+#include "parkade/semantics/zone_marker_faces.hpp"
+#include "parkade/semantics/zone_marker_tracker.hpp"
+#include "parkade/semantics/zone_text_reader.hpp"
+
+namespace parkade {
+
+/// What one camera's sights say to the tracker: those seen whole, from the camera's place `eye` in
+/// the axes of their rays. `reader` reads their faces, from the characters `only` (empty: all);
+/// without a reader nothing is read. Fails as the reader does.
+Result<std::vector<ZoneMarkerView>> viewsOf(const std::vector<ZoneMarkerSight>& sights,
+                                            const Eigen::Vector3d& eye, ZoneTextReader* reader,
+                                            const std::string& only = {});
+
+}  // namespace parkade
