@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "parkade/core/log.hpp"
+#include "parkade/vio/calibration_spread.hpp"
 #include "parkade/vio/estimator_impl.hpp"
 
 namespace parkade {
@@ -44,14 +45,16 @@ VioEstimator::Impl::Impl(const Rig& rig, const VioOptions& options)
     window_.cameras.push_back({camera.camera, T_imu_vehicle * camera.T_vehicle_cam});
   }
   const VioCalibrationOptions& calibration = options.calibration;
-  if (calibration.refine_extrinsics || calibration.refine_time_offset) {
+  // A single camera that sits elsewhere looks much like an inertial unit that does.
+  const bool refine_extrinsics = calibration.refine_extrinsics && window_.cameras.size() > 1;
+  if (refine_extrinsics || calibration.refine_time_offset) {
     // What is not refined is held by a prior that nothing outweighs.
     const double rotation = calibration.rotation_sigma_deg * std::numbers::pi / 180.0;
     for (const VioCamera& camera : window_.cameras) {
       CameraRefinement refinement;
       refinement.prior_T_imu_cam = camera.T_imu_cam;
       refinement.sigma.setConstant(kHeldCalibration);
-      if (calibration.refine_extrinsics) {
+      if (refine_extrinsics) {
         refinement.sigma.head<3>().setConstant(calibration.position_sigma);
         refinement.sigma.segment<3>(3).setConstant(rotation);
       }
@@ -173,6 +176,9 @@ void VioEstimator::Impl::optimise(int max_iterations) {
   if (summary.has_covariance) {
     newest_covariance_ = summary.newest_covariance;
     global_covariance_ = summary.global_covariance;
+    if (options_.calibration.learn_sigmas && !held) {
+      learnCalibrationSpread(window_, global_covariance_);
+    }
   }
   int keyframes = 0;
   for (const WindowFrame& frame : window_.frames) keyframes += frame.keyframe ? 1 : 0;

@@ -25,6 +25,7 @@ constexpr double kInvisibleCost = 50.0;
 FactorSelection FactorSelection::all(const Window& window) {
   FactorSelection s = none(window);
   s.prior = true;
+  s.calibration = true;
   std::fill(s.imu.begin(), s.imu.end(), 1);
   std::fill(s.still.begin(), s.still.end(), 1);
   std::fill(s.unary.begin(), s.unary.end(), 1);
@@ -34,6 +35,7 @@ FactorSelection FactorSelection::all(const Window& window) {
 FactorSelection FactorSelection::none(const Window& window) {
   FactorSelection s;
   s.prior = false;
+  s.calibration = false;
   s.imu.assign(window.frames.size(), 0);
   s.still.assign(window.frames.size(), 0);
   s.unary.assign(window.frames.size(), 0);
@@ -61,6 +63,7 @@ double LinearSystem::linearise(const Window& window, const FactorSelection& sele
   if (selection.prior) addPrior(window);
   addImu(window, selection);
   addMotion(window, selection);
+  if (selection.calibration) addCalibration(window);
   for (WindowFeature* feature : selection.features) addFeature(window, *feature);
   return cost_;
 }
@@ -137,6 +140,9 @@ void LinearSystem::addStart(const Window& window, const WindowFrame& frame, int 
   cost_ += 0.5 * tilt.squaredNorm();
   b_.segment<2>(globals_) += by_gravity.transpose() * tilt;
   H_.block<2, 2>(globals_, globals_) += by_gravity.transpose() * by_gravity;
+}
+
+void LinearSystem::addCalibration(const Window& window) {
   for (std::size_t c = 0; c < window.refinements.size(); ++c) {
     Eigen::Matrix<double, 7, 7> by_camera;
     const Vector7d off = calibrationResidual(window.cameras[c], window.refinements[c], &by_camera);

@@ -17,6 +17,7 @@ struct FactorSelection {
   std::vector<char> imu;    ///< per frame: readings since the frame before it
   std::vector<char> still;  ///< per frame: rest since still_since
   std::vector<char> unary;  ///< per frame: body velocity, start prior (with gravity's)
+  bool calibration = true;  ///< what is known beforehand of refined cameras
   std::vector<WindowFeature*> features;
 
   /// Everything in the window but features.
@@ -25,9 +26,9 @@ struct FactorSelection {
 };
 
 /// The cost of a window, squared about its present state: gradient and Gauss-Newton matrix of the
-/// frames, with the landmarks apart so that they can be eliminated (docs/math/residuals.md, eq. 8).
-/// The robust loss enters as weights. Frame i has rows 15 i to 15 i + 14, the window's
-/// globals the last ones.
+/// frames, with the landmarks apart so that they can be eliminated (docs/math/residuals.md, eq.
+/// 11). The robust loss enters as weights. Frame i has rows 15 i to 15 i + 14, the window's globals
+/// the last ones.
 class LinearSystem {
  public:
   LinearSystem(double huber, const StillSigma& still) : huber_(huber), still_(still) {}
@@ -80,6 +81,7 @@ class LinearSystem {
   void addImu(const Window& window, const FactorSelection& selection);
   void addMotion(const Window& window, const FactorSelection& selection);
   void addStart(const Window& window, const WindowFrame& frame, int index);
+  void addCalibration(const Window& window);
   void addFeature(const Window& window, WindowFeature& feature);
   void addCameras(const CameraJacobians& cameras, const WindowObservation& observation,
                   double weight, int anchor_camera, int anchor, int target,

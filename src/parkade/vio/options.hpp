@@ -97,7 +97,8 @@ struct VioStartUpOptions {
 };
 
 struct VioCalibrationOptions {
-  bool refine_extrinsics = false;
+  bool refine_extrinsics = true;
+  bool learn_sigmas = true;
   bool refine_time_offset = false;
   double position_sigma = 0.005;
   double rotation_sigma_deg = 0.1;
@@ -108,6 +109,9 @@ struct VioCalibrationOptions {
             "Estimate where each camera sits while driving, from the calibration on.");
     v.field("refine_time_offset", refine_time_offset,
             "Estimate each camera's time offset to the IMU while driving.");
+    v.field("learn_sigmas", learn_sigmas,
+            "Learn how wrong the calibration is from how far cameras turn out to be off; the "
+            "sigmas are where that begins.");
     v.field("position_sigma", position_sigma, "m", "Error of the calibrated positions, 1 sigma.",
             1e-5, 1.0);
     v.field("rotation_sigma_deg", rotation_sigma_deg, "deg",
@@ -124,7 +128,7 @@ struct VioOptions {
   VioStartUpOptions start_up;
   VioCalibrationOptions calibration;
   double gravity = 9.81;
-  double imu_noise_factor = 1.0;
+  double imu_noise_factor = 2.0;
   double max_imu_gap_s = 0.1;
   double max_blind_s = 10.0;
   bool use_wheel = false;
@@ -143,7 +147,10 @@ struct VioOptions {
     v.group("calibration", calibration);
     v.field("gravity", gravity, "m/s^2", "Magnitude of gravity.", 9.7, 9.9);
     v.field("imu_noise_factor", imu_noise_factor, "ratio",
-            "Multiplies the calibration's IMU noise densities: real sensors shake.", 0.1, 100.0);
+            "Multiplies the calibration's IMU noise densities: real sensors shake, and errors of "
+            "tracks, "
+            "which last from frame to frame, must not pass for accelerations.",
+            0.1, 100.0);
     v.field("max_imu_gap_s", max_imu_gap_s, "s",
             "Longer steps between IMU readings count as a gap, bridged with raised noise.", 0.005,
             10.0);
