@@ -95,21 +95,36 @@ BevStitcher::BevStitcher(const Rig& rig, const BevOptions& options)
       car_mask_(makeCarMask(rig, geometry_, options.car_margin_m)),
       log_gains_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rig.cameras.size()))),
       warped_(rig.cameras.size()) {
+  masks_.resize(rig.cameras.size());
   for (const RigCamera& camera : rig.cameras) {
     tables_.emplace_back(camera, geometry_, options.border_px, options.max_range_m);
   }
   findOverlaps();
 }
 
-void BevStitcher::setMask(int camera, const cv::Mat& mask) {
+GroundTable& BevStitcher::tableOf(int camera) {
   PARKADE_CHECK(camera >= 0 && camera < static_cast<int>(tables_.size()), "camera {} of {}", camera,
                 tables_.size());
+  return tables_[static_cast<std::size_t>(camera)];
+}
+
+void BevStitcher::setMask(int camera, const cv::Mat& mask) {
+  GroundTable& table = tableOf(camera);
   const Camera& model = rig_.cameras[static_cast<std::size_t>(camera)].camera;
   PARKADE_CHECK(mask.cols == model.width() && mask.rows == model.height(),
                 "mask of {} x {}, calibration for {} x {}", mask.cols, mask.rows, model.width(),
                 model.height());
-  tables_[static_cast<std::size_t>(camera)].hide(mask);
-  overlaps_.clear();
+  masks_[static_cast<std::size_t>(camera)] = mask;
+  table.hide(mask);
+  findOverlaps();
+}
+
+void BevStitcher::moveCamera(int camera, const SE3& T_vehicle_cam) {
+  GroundTable& table = tableOf(camera);
+  const auto index = static_cast<std::size_t>(camera);
+  rig_.cameras[index].T_vehicle_cam = T_vehicle_cam;
+  table = GroundTable(rig_.cameras[index], geometry_, options_.border_px, options_.max_range_m);
+  if (!masks_[index].empty()) table.hide(masks_[index]);
   findOverlaps();
 }
 
@@ -124,6 +139,7 @@ void BevStitcher::findOverlaps() {
   constexpr int kStride = 4;
   constexpr std::size_t kFewest = 20;
   const int count = static_cast<int>(tables_.size());
+  overlaps_.clear();
   for (int i = 0; i < count; ++i) {
     for (int j = i + 1; j < count; ++j) {
       Overlap overlap{i, j, {}};

@@ -51,6 +51,9 @@ class BevStitcher {
   /// does (checked).
   void setMask(int camera, const cv::Mat& mask);
 
+  /// The camera sits elsewhere than the rig said; its mask stays.
+  void moveCamera(int camera, const SE3& T_vehicle_cam);
+
   /// Images must have the sizes of the rig's cameras and be all grey or all BGR (checked); empty
   /// ones are left out.
   [[nodiscard]] BevImage stitch(const FrameSet& frames, const GroundAttitude& attitude = {});
@@ -66,6 +69,7 @@ class BevStitcher {
     int second = 0;
     std::vector<cv::Point> pixels;  ///< of the bird's-eye picture
   };
+  GroundTable& tableOf(int camera);
   void findOverlaps();
   void updateGains(const FrameSet& frames);
 
@@ -73,6 +77,7 @@ class BevStitcher {
   Rig rig_;
   BevGeometry geometry_;
   std::vector<GroundTable> tables_;
+  std::vector<cv::Mat> masks_;  ///< of the own body; empty: none
   std::vector<Overlap> overlaps_;
   cv::Mat car_mask_;  ///< 255 on the own car
   Eigen::VectorXd log_gains_;

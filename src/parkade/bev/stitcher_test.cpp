@@ -114,6 +114,32 @@ TEST(BevStitcher, CorrectsPitchRollAndHeight) {
   EXPECT_LT(corrected, 1.0);
 }
 
+TEST(BevStitcher, CamerasMovedToWhereTheySitGiveThePictureOfTheTrueRig) {
+  const Rig rig = testRig();
+  const FrameSet frames = renderGround(rig, {});
+  cv::Mat mask(rig.cameras[1].camera.height(), rig.cameras[1].camera.width(), CV_8UC1,
+               cv::Scalar(255));
+  mask.rowRange(350, mask.rows).setTo(0);
+  BevStitcher right(rig, {});
+  right.setMask(1, mask);
+  const BevImage expected = right.stitch(frames);
+
+  Rig told = rig;
+  told.cameras[0].T_vehicle_cam.rotation() =
+      told.cameras[0].T_vehicle_cam.rotation() * SO3::exp({0.01, 0.0, 0.0});
+  told.cameras[1].T_vehicle_cam.translation().z() += 0.03;
+  BevStitcher moved(told, {});
+  moved.setMask(1, mask);
+  EXPECT_GT(rmsError(moved.stitch(frames), 6.0), 2.0);
+  BevStitcher mended(told, {});
+  mended.setMask(1, mask);
+  mended.moveCamera(0, rig.cameras[0].T_vehicle_cam);
+  mended.moveCamera(1, rig.cameras[1].T_vehicle_cam);
+  const BevImage found = mended.stitch(frames);
+  EXPECT_EQ(cv::norm(found.image, expected.image, cv::NORM_INF), 0.0);
+  EXPECT_EQ(cv::norm(found.valid, expected.valid, cv::NORM_INF), 0.0);
+}
+
 TEST(BevStitcher, OwnCarAndUnseenGroundAreNotValid) {
   const Rig rig = testRig();
   BevStitcher stitcher(rig, {});

@@ -104,6 +104,7 @@ class MappingRun::Impl {
     FrameSet frames;
     int number = 0;  // of the frame set
     SE3 T_odom_vehicle;
+    std::vector<SE3> cameras;  // where they sit by then; empty: as the rig says
     Result<SemanticFrame> frame = Error{"not looked yet"};
     std::vector<LevelView> views;
     std::future<void> done;
@@ -244,7 +245,11 @@ void MappingRun::Impl::look(Estimation& work, const PoseEstimate& odometry_pose)
   item->frames = std::move(work.packet.frames);
   item->number = work.number;
   item->T_odom_vehicle = odometry_pose.T_odom_vehicle;
+  for (const CameraCalibrationEstimate& camera : estimator_.calibration()) {
+    item->cameras.push_back(camera.T_vehicle_cam);
+  }
   item->done = look_pool_.submit([this, at = item.get()] {
+    front_end->placeCameras(at->cameras);
     at->frame = front_end->look(at->frames);
     at->frames.images.clear();
     if (!at->frame) return;

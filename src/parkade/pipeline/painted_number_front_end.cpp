@@ -117,6 +117,10 @@ struct PaintedNumberFrontEnd::Impl {
 PaintedNumberFrontEnd::PaintedNumberFrontEnd(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 PaintedNumberFrontEnd::~PaintedNumberFrontEnd() = default;
 
+void PaintedNumberFrontEnd::moveCamera(int camera, const SE3& T_vehicle_cam) {
+  impl_->rig.cameras[static_cast<std::size_t>(camera)].T_vehicle_cam = T_vehicle_cam;
+}
+
 Result<std::unique_ptr<PaintedNumberFrontEnd>> PaintedNumberFrontEnd::create(
     const Rig& rig, std::vector<cv::Mat> masks, const PaintedNumberFrontEndOptions& options) {
   std::unique_ptr<PaintedNumberFrontEnd> none;

@@ -54,6 +54,9 @@ class PaintedNumberFrontEnd {
       const Rig& rig, std::vector<cv::Mat> masks, const PaintedNumberFrontEndOptions& options);
   ~PaintedNumberFrontEnd();
 
+  /// The camera sits elsewhere than the rig said.
+  void moveCamera(int camera, const SE3& T_vehicle_cam);
+
   /// Enters what is read in the frame's slots and painted numbers. views: of the stitched picture
   /// that the frame comes from, by camera of the rig. odometry: of this frame set.
   Status read(const FrameSet& frames, const BevViews& views, const PoseEstimate& odometry,

@@ -38,6 +38,7 @@ struct SemanticFrontEnd::Impl {
     GroundPlaneEstimate floor;
     PoseEstimate now;
   };
+  std::vector<SE3> cameras;  // where they are taken to sit
   std::mutex views_mutex;
   std::deque<View> views;
   std::optional<PoseEstimate> last_look;
@@ -61,6 +62,7 @@ Result<std::unique_ptr<SemanticFrontEnd>> SemanticFrontEnd::create(
   for (std::size_t c = 0; c < masks.size(); ++c) {
     if (!masks[c].empty()) impl->stitcher.setMask(static_cast<int>(c), masks[c]);
   }
+  for (const RigCamera& camera : rig.cameras) impl->cameras.push_back(camera.T_vehicle_cam);
   impl->bev_views = viewsOf(impl->stitcher, rig);
   impl->objects = std::make_unique<ObjectExtractor>(impl->stitcher.geometry(), impl->bev_views,
                                                     options.objects);
@@ -92,6 +94,26 @@ bool SemanticFrontEnd::addOdometry(const PoseEstimate& odometry,
   const std::lock_guard lock(m.views_mutex);
   m.views.push_back({floor, odometry});
   return true;
+}
+
+void SemanticFrontEnd::placeCameras(const std::vector<SE3>& T_vehicle_cam) {
+  // Moves a point of the floor at 5 m by 4 mm, and at 8 m by 1 cm, from a camera 1 m high.
+  constexpr double kTurn = 1.75e-4;  // rad
+  constexpr double kStep = 1e-3;     // m
+  Impl& m = *impl_;
+  const std::size_t count = std::min(T_vehicle_cam.size(), m.cameras.size());
+  for (std::size_t c = 0; c < count; ++c) {
+    const SE3& now = T_vehicle_cam[c];
+    if (angleBetween(now.rotation(), m.cameras[c].rotation()) < kTurn &&
+        (now.translation() - m.cameras[c].translation()).norm() < kStep) {
+      continue;
+    }
+    m.cameras[c] = now;
+    const int camera = static_cast<int>(c);
+    m.stitcher.moveCamera(camera, now);
+    if (m.zone_markers != nullptr) m.zone_markers->moveCamera(camera, now);
+    if (m.numbers != nullptr) m.numbers->moveCamera(camera, now);
+  }
 }
 
 Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames) {

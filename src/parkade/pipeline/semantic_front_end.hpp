@@ -74,6 +74,9 @@ class SemanticFrontEnd {
   /// Takes the odometry of every frame set, in order; true where its pictures are due: look() must
   /// then be called with them, once, in the same order; in another thread if need be.
   bool addOdometry(const PoseEstimate& odometry, const std::vector<Landmark>& landmarks);
+  /// Where the cameras sit by what is known now, one a camera: from the next look() on. Small moves
+  /// are left until they add up.
+  void placeCameras(const std::vector<SE3>& T_vehicle_cam);
   /// The features of the first frame set that is due.
   Result<SemanticFrame> look(const FrameSet& frames);
 

@@ -48,6 +48,10 @@ struct ZoneMarkerFrontEnd::Impl {
 ZoneMarkerFrontEnd::ZoneMarkerFrontEnd(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 ZoneMarkerFrontEnd::~ZoneMarkerFrontEnd() = default;
 
+void ZoneMarkerFrontEnd::moveCamera(int camera, const SE3& T_vehicle_cam) {
+  impl_->rig.cameras[static_cast<std::size_t>(camera)].T_vehicle_cam = T_vehicle_cam;
+}
+
 Result<std::unique_ptr<ZoneMarkerFrontEnd>> ZoneMarkerFrontEnd::create(
     const Rig& rig, std::vector<cv::Mat> masks, const ZoneMarkerFrontEndOptions& options) {
   std::unique_ptr<ZoneMarkerFrontEnd> none;

@@ -53,6 +53,9 @@ class ZoneMarkerFrontEnd {
       const Rig& rig, std::vector<cv::Mat> masks, const ZoneMarkerFrontEndOptions& options);
   ~ZoneMarkerFrontEnd();
 
+  /// The camera sits elsewhere than the rig said.
+  void moveCamera(int camera, const SE3& T_vehicle_cam);
+
   /// The markers and signs that have become well enough known by this frame set, in its levelled
   /// vehicle frame; each rests on views of its own. odometry: of this frame set. In order of time.
   Result<std::vector<ObjectObservation>> look(const FrameSet& frames, const PoseEstimate& odometry,
