@@ -92,10 +92,10 @@ BevStitcher::BevStitcher(const Rig& rig, const BevOptions& options)
     : options_(options),
       rig_(rig),
       geometry_(makeGeometry(rig, options)),
+      masks_(rig.cameras.size()),
       car_mask_(makeCarMask(rig, geometry_, options.car_margin_m)),
       log_gains_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rig.cameras.size()))),
       warped_(rig.cameras.size()) {
-  masks_.resize(rig.cameras.size());
   for (const RigCamera& camera : rig.cameras) {
     tables_.emplace_back(camera, geometry_, options.border_px, options.max_range_m);
   }

@@ -14,6 +14,4 @@ namespace parkade::cli {
 Status addConditions(const PaperBenchOptions& options, const BenchDrive& base,
                      std::vector<BenchDrive>& kinds);
 
-/// What stands between the separators, empty parts left out.
-
 }  // namespace parkade::cli

@@ -33,9 +33,7 @@ struct SegmentationNetwork::Impl {
 
   Status forward(const cv::Mat& bgr);
   [[nodiscard]] Status checkOutput(const cv::Size& size) const;
-  Status run(const cv::Mat& image, cv::Mat& labels, cv::Mat& confidence);
-
-  cv::Mat slot_line;  // of the last run
+  Status run(const cv::Mat& image, cv::Mat& labels, cv::Mat& confidence, cv::Mat& slot_line);
 };
 
 Status SegmentationNetwork::Impl::forward(const cv::Mat& bgr) {
@@ -78,7 +76,8 @@ Status SegmentationNetwork::Impl::checkOutput(const cv::Size& size) const {
   return {};
 }
 
-Status SegmentationNetwork::Impl::run(const cv::Mat& image, cv::Mat& labels, cv::Mat& confidence) {
+Status SegmentationNetwork::Impl::run(const cv::Mat& image, cv::Mat& labels, cv::Mat& confidence,
+                                      cv::Mat& slot_line) {
   PARKADE_CHECK(image.type() == CV_8UC3 || image.type() == CV_8UC1, "picture of type {}",
                 image.type());
   cv::Mat bgr = image;
@@ -151,10 +150,9 @@ Result<BevLabels> SegmentationNetwork::segment(const BevImage& bev) {
   BevLabels result;
   result.t_ns = bev.t_ns;
   result.geometry = bev.geometry;
-  const Status status = impl_->run(image, result.labels, result.confidence);
-  if (!status) return status.error();
   cv::Mat& slot_line = result.slot_line;
-  slot_line = impl_->slot_line.clone();
+  const Status status = impl_->run(image, result.labels, result.confidence, slot_line);
+  if (!status) return status.error();
   if (padded != bev.image.size()) {
     const cv::Rect used(cv::Point(), size);
     cv::resize(result.labels(used), result.labels, bev.image.size(), 0, 0, cv::INTER_NEAREST);
@@ -181,7 +179,8 @@ Result<ViewLabels> SegmentationNetwork::segmentView(const cv::Mat& image) {
     input = impl_->resized;
   }
   ViewLabels result;
-  const Status status = impl_->run(input, result.labels, result.confidence);
+  cv::Mat no_lines;
+  const Status status = impl_->run(input, result.labels, result.confidence, no_lines);
   if (!status) return status.error();
   return result;
 }

@@ -14,20 +14,12 @@ namespace {
 constexpr double kLeastPosition = 2e-4;  // m; no calibration is better
 constexpr double kLeastRotation = 1e-4;  // rad
 
-// Of three neighbouring degrees of freedom of all cameras.
-void learn(Window& window, const Eigen::MatrixXd& covariance, Eigen::Index first, double least) {
+// Of three neighbouring degrees of freedom of all cameras, from the mean square of each.
+void learn(Window& window, const Vector7d& mean_square, Eigen::Index first, double least) {
   if (window.refinements.front().sigma(first) < least) return;
-  double sum = 0.0;
-  for (std::size_t c = 0; c < window.refinements.size(); ++c) {
-    const CameraRefinement& refinement = window.refinements[c];
-    const Vector7d whitened = calibrationResidual(window.cameras[c], refinement, nullptr);
-    const Vector7d off = whitened.cwiseProduct(refinement.sigma);
-    const Eigen::Index row = 2 + 7 * static_cast<Eigen::Index>(c) + first;
-    sum += off.segment<3>(first).squaredNorm() + covariance.diagonal().segment<3>(row).sum();
-  }
-  const double mean = sum / (3.0 * static_cast<double>(window.refinements.size()));
+  const double sigma = std::max(least, std::sqrt(mean_square.segment<3>(first).mean()));
   for (CameraRefinement& refinement : window.refinements) {
-    refinement.sigma.segment<3>(first).setConstant(std::max(least, std::sqrt(mean)));
+    refinement.sigma.segment<3>(first).setConstant(sigma);
   }
 }
 
@@ -37,8 +29,16 @@ void learnCalibrationSpread(Window& window, const Eigen::MatrixXd& global_covari
   if (window.refinements.empty()) return;
   PARKADE_CHECK(global_covariance.rows() == window.globalSize(), "covariance of {} of {} globals",
                 global_covariance.rows(), window.globalSize());
-  learn(window, global_covariance, 0, kLeastPosition);
-  learn(window, global_covariance, 3, kLeastRotation);
+  Vector7d sum = Vector7d::Zero();
+  for (std::size_t c = 0; c < window.refinements.size(); ++c) {
+    const CameraRefinement& refinement = window.refinements[c];
+    const Vector7d whitened = calibrationResidual(window.cameras[c], refinement, nullptr);
+    sum += whitened.cwiseProduct(refinement.sigma).cwiseAbs2() +
+           global_covariance.diagonal().segment<7>(Window::cameraGlobal(c));
+  }
+  const Vector7d mean_square = sum / static_cast<double>(window.refinements.size());
+  learn(window, mean_square, 0, kLeastPosition);
+  learn(window, mean_square, 3, kLeastRotation);
 }
 
 }  // namespace parkade

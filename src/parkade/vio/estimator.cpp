@@ -410,9 +410,8 @@ std::vector<CameraCalibrationEstimate> VioEstimator::Impl::calibration() const {
     estimate.time_offset = window_.cameras[c].time_offset;
     estimate.sigma = window_.refinements[c].sigma;
     if (initialised_ && global_covariance_.rows() == window_.globalSize()) {
-      estimate.sigma = global_covariance_.diagonal()
-                           .segment<7>(2 + 7 * static_cast<Eigen::Index>(c))
-                           .cwiseSqrt();
+      estimate.sigma =
+          global_covariance_.diagonal().segment<7>(Window::cameraGlobal(c)).cwiseSqrt();
     }
     result.push_back(estimate);
   }

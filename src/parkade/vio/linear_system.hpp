@@ -88,7 +88,9 @@ class LinearSystem {
                   const Eigen::Vector2d& r, const ReprojectionJacobians& j,
                   LandmarkBlock& landmark);
   void reduceCameras(const LandmarkBlock& landmark, const Eigen::Vector3d& V_b);
-  [[nodiscard]] Eigen::Index cameraRow(int camera) const { return globals_ + 2 + 7 * camera; }
+  [[nodiscard]] Eigen::Index cameraRow(int camera) const {
+    return globals_ + Window::cameraGlobal(static_cast<std::size_t>(camera));
+  }
   void addPair(int i, int j, const Matrix15d& hii, const Matrix15d& hji, const Matrix15d& hjj);
 
   double huber_;

@@ -148,8 +148,7 @@ struct VioOptions {
     v.field("gravity", gravity, "m/s^2", "Magnitude of gravity.", 9.7, 9.9);
     v.field("imu_noise_factor", imu_noise_factor, "ratio",
             "Multiplies the calibration's IMU noise densities: real sensors shake, and errors of "
-            "tracks, "
-            "which last from frame to frame, must not pass for accelerations.",
+            "tracks, which last from frame to frame, must not pass for accelerations.",
             0.1, 100.0);
     v.field("max_imu_gap_s", max_imu_gap_s, "s",
             "Longer steps between IMU readings count as a gap, bridged with raised noise.", 0.005,

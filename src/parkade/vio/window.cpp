@@ -62,14 +62,14 @@ void WindowGravity::fixLinearisation() {
 }
 
 Eigen::Index Window::globalSize() const {
-  return 2 + 7 * static_cast<Eigen::Index>(refinements.size());
+  return cameraGlobal(refinements.size());
 }
 
 Eigen::VectorXd Window::globalDelta() const {
   Eigen::VectorXd delta(globalSize());
   delta.head<2>() = gravity.delta;
   for (std::size_t c = 0; c < refinements.size(); ++c) {
-    delta.segment<7>(2 + 7 * static_cast<Eigen::Index>(c)) = refinements[c].delta;
+    delta.segment<7>(cameraGlobal(c)) = refinements[c].delta;
   }
   return delta;
 }
@@ -79,7 +79,7 @@ void Window::applyGlobals(const Eigen::VectorXd& step) {
   for (std::size_t c = 0; c < refinements.size(); ++c) {
     CameraRefinement& refinement = refinements[c];
     VioCamera& camera = cameras[c];
-    Vector7d move = step.segment<7>(2 + 7 * static_cast<Eigen::Index>(c));
+    Vector7d move = step.segment<7>(cameraGlobal(c));
     SE3 from = camera.T_imu_cam;
     double offset = camera.time_offset;
     if (refinement.linearised) {

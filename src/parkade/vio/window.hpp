@@ -162,6 +162,11 @@ struct Window {
   [[nodiscard]] const WindowFrame* find(int frame_id) const;
   /// The globals: gravity's two degrees of freedom, then seven of every refined camera.
   [[nodiscard]] Eigen::Index globalSize() const;
+  static constexpr Eigen::Index kGravitySize = 2;
+  /// Where a refined camera's seven begin among the globals.
+  [[nodiscard]] static constexpr Eigen::Index cameraGlobal(std::size_t camera) {
+    return kGravitySize + 7 * static_cast<Eigen::Index>(camera);
+  }
   [[nodiscard]] Eigen::VectorXd globalDelta() const;
   void applyGlobals(const Eigen::VectorXd& step);
   void fixGlobals();

@@ -134,7 +134,7 @@ SolveSummary solveAtRest(Window& window, const std::vector<WindowFeature*>& feat
   LinearSystem system(options.huber, options.still);
   // Without images nothing tells where the cameras sit: only gravity moves of the globals, else the
   // prior would pull the cameras away from what the window's pictures have shown.
-  constexpr Eigen::Index kGravity = 2;
+  constexpr Eigen::Index kGravity = Window::kGravitySize;
   const auto begin = kState * static_cast<Eigen::Index>(first_free);
   const auto free_rows =
       kState * static_cast<Eigen::Index>(window.frames.size() - first_free) + kGravity;
