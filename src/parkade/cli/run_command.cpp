@@ -73,7 +73,10 @@ RunMethod methodOf(const std::string& name) {
 Status runSequence(const RunArguments& arguments) {
   PipelineOptions options;
   if (Status status = configure(arguments, options); !status) return status;
-  if (arguments.real_time) options.pace = 1.0;
+  if (arguments.real_time) {
+    options.pace = 1.0;
+    options.live = true;
+  }
   const RunMethod method = methodOf(arguments.method);
   SourceRequest request = arguments.source;
   // The paper's semantic method has one camera: the front one, where the user names no other.
@@ -194,13 +197,14 @@ void addRunCommand(CLI::App& app, int& exit_code) {
       ->group("Options");
 
   command
-      ->add_flag(
-          "--real-time", a->real_time,
-          "Take frame sets when they are due by their stamps, as from a car: latencies are then "
-          "those of a live run")
+      ->add_flag("--real-time", a->real_time,
+                 "Take frame sets when they are due by their stamps, as from a car, and pass "
+                 "pictures over "
+                 "where the computer does not keep up: latencies are then those of a live run")
       ->group("Work");
   command
-      ->add_option("--threads", a->threads, "Threads to work on; the results do not depend on it")
+      ->add_option("--threads", a->threads,
+                   "Threads to work on; but for --real-time the results do not depend on it")
       ->check(CLI::Range(1, 64))
       ->capture_default_str()
       ->group("Work");

@@ -55,6 +55,7 @@ nlohmann::json timingJson(const RunSummary& summary) {
   json["real_time_factor"] =
       summary.recorded_s > 0.0 ? summary.processing_s / summary.recorded_s : 0.0;
   json["peak_memory_mb"] = peakMemoryMb();
+  json["pictures_passed_over"] = summary.pictures_passed_over;
   return json;
 }
 
@@ -247,6 +248,11 @@ std::string timingTable(const RunSummary& summary) {
       "{:.3f}; peak memory {:.0f} MB\n",
       summary.recorded_s, summary.processing_s, summary.reading_s,
       summary.recorded_s > 0.0 ? summary.processing_s / summary.recorded_s : 0.0, peakMemoryMb());
+  if (summary.pictures_passed_over > 0) {
+    text += fmt::format(
+        "the computer did not keep up: {} of {} frame sets were passed over by the semantic part\n",
+        summary.pictures_passed_over, summary.frame_sets);
+  }
   return text;
 }
 

@@ -5,7 +5,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <deque>
 #include <future>
 #include <opencv2/core/utility.hpp>
 #include <optional>
@@ -13,6 +12,7 @@
 #include <utility>
 
 #include "parkade/core/check.hpp"
+#include "parkade/pipeline/semantic_queue.hpp"
 #include "parkade/pipeline/thread_pool.hpp"
 #include "parkade/tracking/overlap.hpp"
 
@@ -67,7 +67,6 @@ class MappingRun::Impl {
         T_vehicle_imu_(rig.imu.T_vehicle_imu),
         semantics_delay_(options.semantics_delay),
         pace_(options.pace),
-        look_pool_(threads > 1 ? 1 : 0),
         pool_(threads - 1) {
     tracker.setParallel([this](int count, const std::function<void(int)>& body) {
       pool_.parallelFor(count, body);
@@ -83,8 +82,8 @@ class MappingRun::Impl {
   RunSummary summary;
   Trajectory trajectory;
   Trajectory odometry;
-  std::unique_ptr<SemanticFrontEnd> front_end;
   std::unique_ptr<SemanticMapper> mapper;
+  std::unique_ptr<SemanticQueue> semantics;  // where there is a mapper; used by its own thread
   std::unique_ptr<DeadReckoning> reckoning;  // instead of key points
 
  private:
@@ -99,24 +98,12 @@ class MappingRun::Impl {
     Clock::time_point end;
   };
 
-  // The features of one frame set, on their way beside everything else.
-  struct Look {
-    FrameSet frames;
-    int number = 0;  // of the frame set
-    SE3 T_odom_vehicle;
-    std::vector<SE3> cameras;  // where they sit by then; empty: as the rig says
-    Result<SemanticFrame> frame = Error{"not looked yet"};
-    std::vector<LevelView> views;
-    std::future<void> done;
-  };
-
   void process(Packet packet);
   TrackSet track(const Packet& packet);
   void finishEstimation();
   void estimate(Estimation& work);
   PoseEstimate odometryOf(const Estimation& work);
-  void look(Estimation& work, const PoseEstimate& odometry_pose);
-  void enterLooks(int before);
+  void offerPictures(Estimation& work, const PoseEstimate& odometry_pose);
   MotionPrior predict(const Packet& packet);
   void summarise(Clock::time_point begin);
   Clock::time_point awaitDue(TimeNs t_ns);
@@ -132,9 +119,7 @@ class MappingRun::Impl {
   StageClock read_clock_{"read"};
   StageClock track_clock_{"track"};
   StageClock estimate_clock_{"estimate"};
-  StageClock fuse_clock_{"fuse"};
   StageClock latency_clock_{"latency"};
-  Status fusion_status_;
   BusyTime busy_;
   int semantics_delay_ = 0;
   double pace_ = 0.0;
@@ -143,9 +128,7 @@ class MappingRun::Impl {
     TimeNs t_ns = 0;
   };
   std::optional<PaceStart> pace_start_;  // of the first frame set
-  std::deque<std::unique_ptr<Look>> looks_;
-  ThreadPool look_pool_;
-  ThreadPool pool_;  // last: the pools' threads use what is above
+  ThreadPool pool_;                      // last: the pools' threads use what is above
 };
 
 MotionPrior MappingRun::Impl::predict(const Packet& packet) {
@@ -213,13 +196,13 @@ PoseEstimate MappingRun::Impl::odometryOf(const Estimation& work) {
 
 void MappingRun::Impl::estimate(Estimation& work) {
   work.begin = Clock::now();
-  enterLooks(work.number - semantics_delay_);
+  if (semantics != nullptr) semantics->enterDue(work.number);
   const PoseEstimate estimate = odometryOf(work);
   work.state = estimator_.predictor();
   PoseEstimate fused = mapper == nullptr ? estimate : mapper->addOdometry(estimate);
   if (mapper != nullptr && semantics_delay_ == 0) {
-    look(work, estimate);
-    enterLooks(work.number);
+    offerPictures(work, estimate);
+    semantics->enterDue(work.number);
     fused = mapper->estimate();
   }
   if (estimate.health != Health::kInitialising) {
@@ -231,54 +214,18 @@ void MappingRun::Impl::estimate(Estimation& work) {
     observer->onPose({work.packet.frames.index, static_cast<int>(work.tracks.observations.size()),
                       fused, estimator_.statistics()});
   }
-  if (mapper != nullptr && semantics_delay_ > 0) look(work, estimate);
+  if (mapper != nullptr && semantics_delay_ > 0) offerPictures(work, estimate);
   work.packet.frames.images.clear();
 }
 
-// Sends the frame set off to be looked at, where that is due.
-void MappingRun::Impl::look(Estimation& work, const PoseEstimate& odometry_pose) {
-  const std::vector<Landmark> landmarks =
-      reckoning != nullptr ? std::vector<Landmark>() : estimator_.landmarks();
-  if (!front_end->addOdometry(odometry_pose, landmarks)) return;
-  mapper->holdView();
-  auto item = std::make_unique<Look>();
-  item->frames = std::move(work.packet.frames);
-  item->number = work.number;
-  item->T_odom_vehicle = odometry_pose.T_odom_vehicle;
+void MappingRun::Impl::offerPictures(Estimation& work, const PoseEstimate& odometry_pose) {
+  std::vector<SE3> cameras;
   for (const CameraCalibrationEstimate& camera : estimator_.calibration()) {
-    item->cameras.push_back(camera.T_vehicle_cam);
+    cameras.push_back(camera.T_vehicle_cam);
   }
-  item->done = look_pool_.submit([this, at = item.get()] {
-    front_end->placeCameras(at->cameras);
-    at->frame = front_end->look(at->frames);
-    at->frames.images.clear();
-    if (!at->frame) return;
-    at->views = front_end->views();
-    for (PipelineObserver* observer : observers) {
-      observer->onFeatures({front_end->picture(), *at->frame});
-    }
-  });
-  looks_.push_back(std::move(item));
-}
-
-// Waits for the features of frame sets up to that number, and corrects with them.
-void MappingRun::Impl::enterLooks(int before) {
-  while (!looks_.empty() && looks_.front()->number <= before) {
-    const std::unique_ptr<Look> item = std::move(looks_.front());
-    looks_.pop_front();
-    item->done.get();
-    if (!item->frame) {
-      if (fusion_status_) fusion_status_ = item->frame.error();
-      mapper->dropView();
-      continue;
-    }
-    const Clock::time_point begin = Clock::now();
-    mapper->addSemantics(*item->frame, item->views);
-    fuse_clock_.add(millisecondsBetween(begin, Clock::now()));
-    for (PipelineObserver* observer : observers) {
-      observer->onMap({*item->frame, item->T_odom_vehicle, mapper->localMap()});
-    }
-  }
+  semantics->offer(work.packet.frames, work.number, odometry_pose,
+                   reckoning != nullptr ? std::vector<Landmark>() : estimator_.landmarks(),
+                   std::move(cameras));
 }
 
 void MappingRun::Impl::finishEstimation() {
@@ -354,10 +301,12 @@ Status MappingRun::Impl::run(SensorSource& source, const ProgressCallback& progr
   }
   dispatch();
   finishEstimation();
-  enterLooks(summary.frame_sets);
-  if (mapper != nullptr) mapper->finish();
+  if (mapper != nullptr) {
+    semantics->finish();
+    mapper->finish();
+  }
   summarise(begin);
-  if (status && !fusion_status_) status = fusion_status_;
+  if (status && semantics != nullptr) status = semantics->status();
   return status;
 }
 
@@ -369,8 +318,8 @@ void MappingRun::Impl::summarise(Clock::time_point begin) {
       summary.frame_sets > 0 ? static_cast<double>(observations_) / summary.frame_sets : 0.0;
   summary.stages = {read_clock_.timing(), track_clock_.timing(), estimate_clock_.timing()};
   if (mapper != nullptr) {
-    for (const StageTiming& stage : front_end->timings()) summary.stages.push_back(stage);
-    summary.stages.push_back(fuse_clock_.timing());
+    for (const StageTiming& stage : semantics->timings()) summary.stages.push_back(stage);
+    summary.pictures_passed_over = semantics->passedOver();
   }
   summary.stages.push_back(latency_clock_.timing());
 }
@@ -395,7 +344,6 @@ Result<std::unique_ptr<MappingRun>> MappingRun::create(const Rig& rig,
   }
   auto front_end = SemanticFrontEnd::create(rig, *masks, options.semantics);
   if (!front_end) return front_end.error();
-  impl->front_end = std::move(front_end).value();
   if (method != RunMethod::kFused) {
     impl->reckoning = std::make_unique<DeadReckoning>(rig.imu.T_vehicle_imu, options.reckoning);
   }
@@ -408,6 +356,9 @@ Result<std::unique_ptr<MappingRun>> MappingRun::create(const Rig& rig,
     }
     impl->mapper = std::make_unique<FusedMapper>(options.fusion, std::move(viewpoints));
   }
+  impl->semantics = std::make_unique<SemanticQueue>(
+      std::move(front_end).value(), *impl->mapper, impl->observers,
+      SemanticQueueOptions{options.semantics_delay, options.live, threads - 1});
   return std::unique_ptr<MappingRun>(new MappingRun(std::move(impl)));
 }
 

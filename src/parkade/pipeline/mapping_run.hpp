@@ -32,6 +32,7 @@ struct PipelineOptions {
   AvpSlamOptions avp_slam;
   int semantics_delay = 2;
   double pace = 0.0;
+  bool live = false;
 
   void visit(OptionVisitor& v) {
     v.group("tracking", tracking);
@@ -40,14 +41,18 @@ struct PipelineOptions {
     v.group("fusion", fusion);
     v.group("reckoning", reckoning);
     v.group("avp_slam", avp_slam);
-    v.field("semantics_delay", semantics_delay, "count",
-            "Features of a frame set correct the pose this many frame sets later: poses never wait "
-            "for networks, and never depend on how fast these are.",
-            0, 50);
+    v.field(
+        "semantics_delay", semantics_delay, "count",
+        "Features of a frame set correct the pose this many frame sets later, however fast they "
+        "are: poses wait for networks only where these take longer than that.",
+        0, 50);
     v.field("pace", pace, "ratio",
             "Frame sets are taken no faster than so many times the pace of their stamps, as a "
             "car's cameras give them at 1; 0: as fast as they can be read. Changes no result.",
             0.0, 1000.0);
+    v.field("live", live,
+            "Poses never wait for features: late ones enter when they are ready, and pictures are "
+            "passed over meanwhile. Changes results where the computer does not keep up.");
   }
 };
 
@@ -111,6 +116,7 @@ struct RunSummary {
   double mean_tracks = 0.0;         ///< observations per frame set
   std::vector<StageTiming> stages;  ///< read, track, estimate, latency (frame set to pose)
   std::vector<int> images;          ///< usable images per camera
+  int pictures_passed_over = 0;     ///< frame sets that a live run took no time to look at
 };
 
 /// The mapping run: source -> tracker -> estimator. The only owner of threads: tracking of frame

@@ -256,6 +256,42 @@ TEST(MappingRun, ShowsFeaturesAsTheyAreSeenAndAsTheyEnterTheMap) {
   }
 }
 
+TEST(MappingRun, ALiveRunPassesPicturesOverRatherThanWait) {
+  class Slow : public Onlooker {
+   public:
+    void onFeatures(const FeaturesEvent& event) override {
+      Onlooker::onFeatures(event);
+      std::this_thread::sleep_for(std::chrono::milliseconds(600));
+    }
+  };
+  int poses = 0;
+  for (const bool live : {false, true}) {
+    DotSource source;
+    PipelineOptions options;
+    options.pace = 1.0;
+    options.live = live;
+    options.semantics.distance_m = 0.0;  // every picture is due
+    auto run = MappingRun::create(source.rig, options, 2, RunMethod::kFused);
+    ASSERT_TRUE(run.ok()) << run.error().message;
+    Slow onlooker;
+    (*run)->addObserver(&onlooker);
+    ASSERT_TRUE((*run)->run(source).ok());
+    const RunSummary& summary = (*run)->summary();
+    if (!live) poses = summary.poses;
+    EXPECT_GT(poses, 10);
+    EXPECT_EQ(summary.poses, poses);
+    EXPECT_EQ(onlooker.entered, onlooker.seen);
+    EXPECT_FALSE(onlooker.seen.empty());
+    const int pictures = static_cast<int>(onlooker.seen.size());
+    EXPECT_EQ(summary.pictures_passed_over + pictures, poses);
+    if (live) {
+      EXPECT_GT(summary.pictures_passed_over, 0);
+    } else {
+      EXPECT_EQ(summary.pictures_passed_over, 0);
+    }
+  }
+}
+
 TEST(MappingRun, KeepsWhatItHasWhenTheSourceFails) {
   DotSource source;
   source.fail_at = 400;

@@ -33,15 +33,16 @@ struct SemanticFrontEnd::Impl {
   AgentTracker tracker;
   std::unique_ptr<ZoneMarkerFrontEnd> zone_markers;  // null: there are no networks for it
   std::unique_ptr<PaintedNumberFrontEnd> numbers;    // null likewise
-  // Taken by addOdometry(), used by look(), which may work in another thread meanwhile.
   struct View {
     GroundPlaneEstimate floor;
     PoseEstimate now;
   };
-  std::vector<SE3> cameras;  // where they are taken to sit
+  std::vector<SE3> cameras;    // where they are taken to sit
+  std::optional<View> newest;  // of the last addOdometry()
+  std::optional<PoseEstimate> last_look;
+  // Taken by take(), used by look(), which may work in another thread meanwhile.
   std::mutex views_mutex;
   std::deque<View> views;
-  std::optional<PoseEstimate> last_look;
   BevImage bev;
   StageClock stitch_clock{"bev"};
   StageClock segment_clock{"segment"};
@@ -81,7 +82,7 @@ bool SemanticFrontEnd::addOdometry(const PoseEstimate& odometry,
                                    const std::vector<Landmark>& landmarks) {
   Impl& m = *impl_;
   if (odometry.health == Health::kInitialising) return false;
-  const GroundPlaneEstimate floor = m.ground.update(odometry, landmarks);
+  m.newest = {m.ground.update(odometry, landmarks), odometry};
   if (m.last_look) {
     const Eigen::Vector3d step =
         odometry.T_odom_vehicle.translation() - m.last_look->T_odom_vehicle.translation();
@@ -90,10 +91,15 @@ bool SemanticFrontEnd::addOdometry(const PoseEstimate& odometry,
       return false;
     }
   }
-  m.last_look = odometry;
-  const std::lock_guard lock(m.views_mutex);
-  m.views.push_back({floor, odometry});
   return true;
+}
+
+void SemanticFrontEnd::take() {
+  Impl& m = *impl_;
+  PARKADE_CHECK(m.newest, "no odometry yet");
+  m.last_look = m.newest->now;
+  const std::lock_guard lock(m.views_mutex);
+  m.views.push_back(*m.newest);
 }
 
 void SemanticFrontEnd::placeCameras(const std::vector<SE3>& T_vehicle_cam) {
@@ -125,7 +131,7 @@ Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames) {
   Impl::View view;
   {
     const std::lock_guard lock(m.views_mutex);
-    PARKADE_CHECK(!m.views.empty(), "no picture is due");
+    PARKADE_CHECK(!m.views.empty(), "no picture was taken");
     view = std::move(m.views.front());
     m.views.pop_front();
   }

@@ -71,13 +71,15 @@ class SemanticFrontEnd {
                                                           const SemanticFrontEndOptions& options);
   ~SemanticFrontEnd();
 
-  /// Takes the odometry of every frame set, in order; true where its pictures are due: look() must
-  /// then be called with them, once, in the same order; in another thread if need be.
+  /// Takes the odometry of every frame set, in order; true where its pictures are due.
   bool addOdometry(const PoseEstimate& odometry, const std::vector<Landmark>& landmarks);
+  /// The pictures of the last frame set will be looked at: look() must be called with them, once,
+  /// in the order of these calls; in another thread if need be.
+  void take();
   /// Where the cameras sit by what is known now, one a camera: from the next look() on. Small moves
   /// are left until they add up.
   void placeCameras(const std::vector<SE3>& T_vehicle_cam);
-  /// The features of the first frame set that is due.
+  /// The features of the first frame set that was taken.
   Result<SemanticFrame> look(const FrameSet& frames);
 
   /// The stitched picture that the last look() saw.

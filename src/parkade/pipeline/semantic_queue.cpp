@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/pipeline/semantic_queue.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "parkade/pipeline/mapping_run.hpp"
+
+namespace parkade {
+
+SemanticQueue::SemanticQueue(std::unique_ptr<SemanticFrontEnd> front_end, SemanticMapper& mapper,
+                             const std::vector<PipelineObserver*>& observers,
+                             const SemanticQueueOptions& options)
+    : options_(options),
+      front_end_(std::move(front_end)),
+      mapper_(mapper),
+      observers_(observers),
+      pool_(std::min(options.threads, 1)) {}
+
+void SemanticQueue::enterDue(int number) {
+  while (!looks_.empty() && looks_.front()->number <= number - options_.delay) {
+    const bool ready =
+        looks_.front()->done.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    if (options_.live && !ready) return;
+    enterFirst();
+  }
+}
+
+void SemanticQueue::offer(FrameSet& frames, int number, const PoseEstimate& odometry,
+                          const std::vector<Landmark>& landmarks, std::vector<SE3> cameras) {
+  const bool overdue = !looks_.empty() && looks_.front()->number <= number - options_.delay;
+  if (!front_end_->addOdometry(odometry, landmarks)) return;
+  if (options_.live && overdue) {
+    ++passed_over_;
+    return;
+  }
+  front_end_->take();
+  mapper_.holdView();
+  auto look = std::make_unique<Look>();
+  look->frames = std::move(frames);
+  look->number = number;
+  look->T_odom_vehicle = odometry.T_odom_vehicle;
+  look->cameras = std::move(cameras);
+  look->done = pool_.submit([this, at = look.get()] { work(*at); });
+  looks_.push_back(std::move(look));
+}
+
+void SemanticQueue::work(Look& look) {
+  front_end_->placeCameras(look.cameras);
+  look.frame = front_end_->look(look.frames);
+  look.frames.images.clear();
+  if (!look.frame) return;
+  look.views = front_end_->views();
+  for (PipelineObserver* observer : observers_) {
+    observer->onFeatures({front_end_->picture(), *look.frame});
+  }
+}
+
+void SemanticQueue::enterFirst() {
+  const std::unique_ptr<Look> look = std::move(looks_.front());
+  looks_.pop_front();
+  look->done.get();
+  if (!look->frame) {
+    if (status_) status_ = look->frame.error();
+    mapper_.dropView();
+    return;
+  }
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin = Clock::now();
+  mapper_.addSemantics(*look->frame, look->views);
+  fuse_clock_.add(std::chrono::duration<double, std::milli>(Clock::now() - begin).count());
+  for (PipelineObserver* observer : observers_) {
+    observer->onMap({*look->frame, look->T_odom_vehicle, mapper_.localMap()});
+  }
+}
+
+void SemanticQueue::finish() {
+  while (!looks_.empty()) enterFirst();
+}
+
+std::vector<StageTiming> SemanticQueue::timings() const {
+  std::vector<StageTiming> stages = front_end_->timings();
+  stages.push_back(fuse_clock_.timing());
+  return stages;
+}
+
+}  // namespace parkade

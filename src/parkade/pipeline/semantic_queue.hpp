@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+#include <future>
+#include <memory>
+#include <vector>
+
+#include "parkade/core/result.hpp"
+#include "parkade/pipeline/semantic_front_end.hpp"
+#include "parkade/pipeline/semantic_mapper.hpp"
+#include "parkade/pipeline/stage_clock.hpp"
+#include "parkade/pipeline/thread_pool.hpp"
+#include "parkade/types/samples.hpp"
+
+namespace parkade {
+
+class PipelineObserver;
+
+struct SemanticQueueOptions {
+  int delay = 2;      ///< frame sets until features enter the map
+  bool live = false;  ///< never wait for features: pass pictures over instead
+  int threads = 1;    ///< of its own, one at most is of use; with none it works in its caller's
+};
+
+/// The semantic side of a run: has pictures looked at beside everything else, and corrects the
+/// mapper with what was seen in them, in their order.
+///
+/// Features enter a fixed number of frame sets after their picture, waited for where they are not
+/// ready: what comes out does not depend on how fast they are made. A live one does not wait: they
+/// enter when they are ready, and no new picture is taken while some are overdue. Where the
+/// computer keeps up, both give the same.
+class SemanticQueue {
+ public:
+  /// mapper and observers: not owned, must live as long.
+  SemanticQueue(std::unique_ptr<SemanticFrontEnd> front_end, SemanticMapper& mapper,
+                const std::vector<PipelineObserver*>& observers,
+                const SemanticQueueOptions& options);
+
+  /// Corrects the mapper with the features that are due at frame set `number`.
+  void enterDue(int number);
+  /// Sends the pictures of a frame set off, where they are due by the way driven; takes them then.
+  /// cameras: where they sit by now, empty: as the rig says.
+  void offer(FrameSet& frames, int number, const PoseEstimate& odometry,
+             const std::vector<Landmark>& landmarks, std::vector<SE3> cameras);
+  /// Waits for all that is on its way and enters it.
+  void finish();
+
+  /// The first failure to look at a picture, by now.
+  [[nodiscard]] const Status& status() const { return status_; }
+  /// Pictures that a live run took no time for.
+  [[nodiscard]] int passedOver() const { return passed_over_; }
+  [[nodiscard]] std::vector<StageTiming> timings() const;
+
+ private:
+  // The features of one frame set, on their way.
+  struct Look {
+    FrameSet frames;
+    int number = 0;  // of the frame set
+    SE3 T_odom_vehicle;
+    std::vector<SE3> cameras;
+    Result<SemanticFrame> frame = Error{"not looked yet"};
+    std::vector<LevelView> views;
+    std::future<void> done;
+  };
+
+  void work(Look& look);
+  void enterFirst();
+
+  SemanticQueueOptions options_;
+  std::unique_ptr<SemanticFrontEnd> front_end_;
+  SemanticMapper& mapper_;
+  const std::vector<PipelineObserver*>& observers_;
+  std::deque<std::unique_ptr<Look>> looks_;
+  StageClock fuse_clock_{"fuse"};
+  Status status_;
+  int passed_over_ = 0;
+  ThreadPool pool_;  // last: its thread uses what is above
+};
+
+}  // namespace parkade
