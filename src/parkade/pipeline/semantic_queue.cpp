@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/pipeline/semantic_queue.hpp"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -9,6 +11,15 @@
 #include "parkade/pipeline/mapping_run.hpp"
 
 namespace parkade {
+namespace {
+
+// The calling thread alone: on Linux each has its own niceness. Poses go first.
+void giveWay() {
+  constexpr int kNiceness = 10;
+  setpriority(PRIO_PROCESS, 0, kNiceness);
+}
+
+}  // namespace
 
 SemanticQueue::SemanticQueue(std::unique_ptr<SemanticFrontEnd> front_end, SemanticMapper& mapper,
                              const std::vector<PipelineObserver*>& observers,
@@ -17,7 +28,9 @@ SemanticQueue::SemanticQueue(std::unique_ptr<SemanticFrontEnd> front_end, Semant
       front_end_(std::move(front_end)),
       mapper_(mapper),
       observers_(observers),
-      pool_(std::min(options.threads, 1)) {}
+      pool_(std::min(options.threads, 1)) {
+  if (options.live && options.threads > 0) pool_.submit(giveWay);
+}
 
 void SemanticQueue::enterDue(int number) {
   while (!looks_.empty() && looks_.front()->number <= number - options_.delay) {

@@ -29,8 +29,8 @@ struct SemanticQueueOptions {
 ///
 /// Features enter a fixed number of frame sets after their picture, waited for where they are not
 /// ready: what comes out does not depend on how fast they are made. A live one does not wait: they
-/// enter when they are ready, and no new picture is taken while some are overdue. Where the
-/// computer keeps up, both give the same.
+/// enter when they are ready, no new picture is taken while some are overdue, and its thread gives
+/// way to others. Where the computer keeps up, both give the same.
 class SemanticQueue {
  public:
   /// mapper and observers: not owned, must live as long.
