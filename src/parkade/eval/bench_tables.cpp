@@ -241,11 +241,13 @@ std::optional<TextTable> mapTable(const std::vector<BenchRecord>& records) {
                             {"read rightly", "map.slots.numbers.right", 0, 1.0},
                             {"wrongly", "map.slots.numbers.wrong", 0, 1.0},
                             {"lines IoU", "map.layers.parking_lines.tolerant_iou", 3, 1.0},
-                            {"markers IoU", "map.layers.road_markers.tolerant_iou", 3, 1.0}});
+                            {"markers IoU", "map.layers.road_markers.tolerant_iou", 3, 1.0},
+                            {"loops", "map.loops.told", 0, 1.0},
+                            {"wrong", "map.loops.wrong", 0, 1.0}});
   table.note =
       "Slots passed within 8 m; corner: entrance corners, median and p95; availability: share of "
       "found slots told rightly; numbers: found slots that have one painted; IoU within a cell of "
-      "5 cm.";
+      "5 cm; loop closures, and those that are wrong.";
   return table;
 }
 

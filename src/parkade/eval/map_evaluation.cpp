@@ -300,6 +300,7 @@ MapEvaluation evaluateMap(const ParkingMap& map, const SE2& T_truth_map, const M
   }
   scoreSlots(map, truth, way, result);
   scoreObjects(map, truth, way, result);
+  result.loops = scoreLoops(map, truth.driven);
   for (Eigen::Vector2d& p : way) p = T_truth_map.inverse() * p;
   for (const GridLayer layer : kGridLayers) {
     if (layer == GridLayer::kDynamic) continue;

@@ -10,6 +10,7 @@
 #include "parkade/core/options.hpp"
 #include "parkade/core/result.hpp"
 #include "parkade/eval/layer_score.hpp"
+#include "parkade/eval/loop_score.hpp"
 #include "parkade/eval/map_truth.hpp"
 #include "parkade/eval/statistics.hpp"
 #include "parkade/geometry/se2.hpp"
@@ -93,6 +94,7 @@ struct MapEvaluation {
   std::vector<std::size_t> wrong;   ///< slots of the map near the way that are none
   std::map<SemanticClass, ObjectScore> objects;
   std::map<GridLayer, LayerScore> layers;
+  LoopScore loops;
 };
 
 /// Where the map's frame lies in the truth's: the map's first pose put on the truth's pose of that

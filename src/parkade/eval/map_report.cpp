@@ -57,6 +57,13 @@ Json layerJson(const LayerScore& s) {
           {"seen", s.seen}};
 }
 
+Json loopsJson(const LoopScore& s) {
+  return {{"told", s.told},
+          {"wrong", s.wrong},
+          {"error_m", toJson(s.error)},
+          {"turn_deg", toJson(s.turn)}};
+}
+
 std::string share(int part, int whole) {
   return whole > 0 ? fmt::format("{:.3f} ({} of {})", 1.0 * part / whole, part, whole) : "-";
 }
@@ -99,6 +106,7 @@ std::string mapEvaluationJson(const MapEvaluation& e) {
     json["layers"][std::string(kGridLayerNames[static_cast<std::size_t>(layer)])] =
         layerJson(score);
   }
+  json["loops"] = loopsJson(e.loops);
   const Eigen::Vector2d& t = e.T_truth_map.translation();
   json["T_truth_map"] = {{"x", t.x()}, {"y", t.y()}, {"angle", e.T_truth_map.angle()}};
   json["passed_within_m"] = e.options.passed_within_m;
@@ -125,6 +133,8 @@ std::string mapEvaluationTable(const MapEvaluation& e) {
                         kGridLayerNames[static_cast<std::size_t>(layer)], s.iou, s.tolerant_iou,
                         s.tolerant_precision, s.tolerant_recall, s.seen);
   }
+  text += fmt::format("\n{:<18}{} told, {} wrong\n", "loop closures", e.loops.told, e.loops.wrong);
+  text += errors("place", e.loops.error);
   return text;
 }
 
