@@ -12,9 +12,9 @@ namespace parkade {
 
 /// How the visual-inertial odometry errs between two frame sets, at least.
 struct OdometryNoiseOptions {
-  double translation = 0.003;
+  double translation = 0.002;
   double yaw_deg = 0.006;
-  double height = 0.003;
+  double height = 0.002;
   double standing = 0.0005;
   double degraded_factor = 5.0;
 
