@@ -12,6 +12,7 @@
 #include <optional>
 #include <set>
 
+#include "parkade/eval/bench_map_tables.hpp"
 #include "parkade/eval/consistency.hpp"
 #include "parkade/eval/statistics.hpp"
 
@@ -364,6 +365,7 @@ std::vector<TextTable> detailTables(const std::vector<BenchRecord>& records,
   add(consistencyTable(records, present));
   add(timingTable(records));
   add(mapTable(records));
+  add(objectTable(records, present));
   return tables;
 }
 

@@ -92,6 +92,26 @@ TEST(BenchTables, HonestyStandsBesideItsBand) {
                                                    "0.17 to 2.57")));
 }
 
+TEST(BenchTables, ObjectsAreSummedOverTheDrivesAsTheyAre) {
+  std::vector<BenchRecord> records;
+  for (int i = 1; i <= 3; ++i) {
+    records.push_back(record("test" + std::to_string(i), "fused", 0.01));
+    auto& figures = records.back().figures;
+    const std::string arrow = "map.objects.arrow.";
+    figures[arrow + "passed"] = 4.0;
+    figures[arrow + "found"] = 3.0;
+    figures[arrow + "told"] = 5.0;
+    figures[arrow + "wrong"] = 1.0;
+    figures[arrow + "texts.count"] = 3.0;
+    figures[arrow + "texts.right"] = 2.0;
+  }
+  records[2].condition = "10 lux";
+  const std::vector<TextTable> tables = detailTables(records, kMethods);
+  EXPECT_EQ(tables.back().title, "Objects of the maps");
+  EXPECT_THAT(tables.back().rows, ElementsAre(ElementsAre("fused", "arrow", "8", "6", "0.750", "10",
+                                                          "2", "0.800", "4 of 6")));
+}
+
 TEST(BenchTables, TextsOfEveryLength) {
   const TextTable table{"T", "note", {"name", "m"}, {{"ä|b", "1.0"}, {"c"}}};
   EXPECT_EQ(plainText(table), "T\nname    m\n---------\nä|b   1.0\nc\nnote\n");
