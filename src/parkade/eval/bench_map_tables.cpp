@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -55,6 +56,9 @@ std::optional<TextTable> objectTable(const std::vector<BenchRecord>& records,
       const bool counts = record.method == method.name && record.condition.empty();
       if (counts && !record.failed) add(record, classes);
     }
+    const bool any = std::any_of(classes.begin(), classes.end(),
+                                 [](const auto& entry) { return entry.second.told > 0.0; });
+    if (!any) continue;  // a method whose maps hold no objects
     for (const auto& [name, c] : classes) {
       table.rows.push_back(
           {method.name, name, figureText(c.passed, 0), figureText(c.found, 0),

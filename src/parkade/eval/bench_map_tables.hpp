@@ -11,7 +11,7 @@
 namespace parkade {
 
 /// Objects of the maps, class by class, summed over the runs of each method on drives as they are
-/// (no condition). Nothing where no run made a map.
+/// (no condition). Methods whose maps hold no objects are left out; nothing where that is all.
 std::optional<TextTable> objectTable(const std::vector<BenchRecord>& records,
                                      const std::vector<BenchMethod>& methods);
 

@@ -106,6 +106,9 @@ TEST(BenchTables, ObjectsAreSummedOverTheDrivesAsTheyAre) {
     figures[arrow + "texts.right"] = 2.0;
   }
   records[2].condition = "10 lux";
+  records.push_back(record("test1", "avp-slam", 0.3));
+  records.back().figures["map.objects.arrow.passed"] = 4.0;
+  records.back().figures["map.objects.arrow.told"] = 0.0;
   const std::vector<TextTable> tables = detailTables(records, kMethods);
   EXPECT_EQ(tables.back().title, "Objects of the maps");
   EXPECT_THAT(tables.back().rows, ElementsAre(ElementsAre("fused", "arrow", "8", "6", "0.750", "10",
