@@ -24,12 +24,10 @@ struct Counts {
 // "map.objects.CLASS.FIGURE" of one record, added up.
 void add(const BenchRecord& record, std::map<std::string, Counts>& classes) {
   const std::string before = "map.objects.";
-  const std::string after = ".passed";
-  for (const auto& [path, passed] : record.figures) {
-    if (!path.starts_with(before) || !path.ends_with(after)) continue;
-    const std::string stem = path.substr(0, path.size() - after.size());
-    Counts& counts = classes[stem.substr(before.size())];
-    counts.passed += passed;
+  for (const std::string& name : record.namesBetween(before, ".passed")) {
+    const std::string stem = before + name;
+    Counts& counts = classes[name];
+    counts.passed += record.figure(stem + ".passed");
     counts.found += record.figure(stem + ".found");
     counts.told += record.figure(stem + ".told");
     counts.wrong += record.figure(stem + ".wrong");

@@ -185,14 +185,9 @@ TextTable accuracyTable(const std::vector<BenchRecord>& records) {
 }
 
 std::vector<std::string> stageNames(const std::vector<BenchRecord>& records) {
-  const std::string before = "timing.stages.";
-  const std::string after = ".mean_ms";
   std::vector<std::string> names;
   for (const BenchRecord& record : records) {
-    for (const auto& [path, value] : record.figures) {
-      if (!path.starts_with(before) || !path.ends_with(after)) continue;
-      const std::string name =
-          path.substr(before.size(), path.size() - before.size() - after.size());
+    for (const std::string& name : record.namesBetween("timing.stages.", ".mean_ms")) {
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
   }
@@ -321,6 +316,16 @@ std::optional<TextTable> summaryTable(const std::string& title,
 double BenchRecord::figure(const std::string& path) const {
   const auto found = figures.find(path);
   return found == figures.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
+}
+
+std::vector<std::string> BenchRecord::namesBetween(const std::string& before,
+                                                   const std::string& after) const {
+  std::vector<std::string> names;
+  for (const auto& [path, value] : figures) {
+    if (!path.starts_with(before) || !path.ends_with(after)) continue;
+    names.push_back(path.substr(before.size(), path.size() - before.size() - after.size()));
+  }
+  return names;
 }
 
 std::string figureText(double value, int decimals) {

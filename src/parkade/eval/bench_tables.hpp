@@ -27,6 +27,9 @@ struct BenchRecord {
 
   /// NaN where unknown.
   [[nodiscard]] double figure(const std::string& path) const;
+  /// What stands between `before` and `after` in the paths that begin and end so.
+  [[nodiscard]] std::vector<std::string> namesBetween(const std::string& before,
+                                                      const std::string& after) const;
 };
 
 /// A method's place in the tables.

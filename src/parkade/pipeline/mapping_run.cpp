@@ -21,10 +21,6 @@ namespace {
 
 using Clock = BusyTime::Clock;
 
-double millisecondsBetween(Clock::time_point begin, Clock::time_point end) {
-  return std::chrono::duration<double, std::milli>(end - begin).count();
-}
-
 // The turn of the vehicle between two instants by the gyroscope alone, its bias unknown: what can
 // be said before the estimator has started.
 MotionPrior turnBetween(const std::vector<ImuSample>& readings, const SE3& T_vehicle_imu,
@@ -83,7 +79,7 @@ class MappingRun::Impl {
   Trajectory trajectory;
   Trajectory odometry;
   std::unique_ptr<SemanticMapper> mapper;
-  std::unique_ptr<SemanticQueue> semantics;  // where there is a mapper; used by its own thread
+  std::unique_ptr<SemanticQueue> semantics;  // where there is a mapper
   std::unique_ptr<DeadReckoning> reckoning;  // instead of key points
 
  private:
@@ -219,13 +215,15 @@ void MappingRun::Impl::estimate(Estimation& work) {
 }
 
 void MappingRun::Impl::offerPictures(Estimation& work, const PoseEstimate& odometry_pose) {
+  const std::vector<Landmark> landmarks =
+      reckoning != nullptr ? std::vector<Landmark>() : estimator_.landmarks();
+  if (!semantics->wants(work.number, odometry_pose, landmarks)) return;
   std::vector<SE3> cameras;
   for (const CameraCalibrationEstimate& camera : estimator_.calibration()) {
     cameras.push_back(camera.T_vehicle_cam);
   }
-  semantics->offer(work.packet.frames, work.number, odometry_pose,
-                   reckoning != nullptr ? std::vector<Landmark>() : estimator_.landmarks(),
-                   std::move(cameras));
+  semantics->take(std::move(work.packet.frames), work.number, odometry_pose.T_odom_vehicle,
+                  std::move(cameras));
 }
 
 void MappingRun::Impl::finishEstimation() {
@@ -358,7 +356,7 @@ Result<std::unique_ptr<MappingRun>> MappingRun::create(const Rig& rig,
   }
   impl->semantics = std::make_unique<SemanticQueue>(
       std::move(front_end).value(), *impl->mapper, impl->observers,
-      SemanticQueueOptions{options.semantics_delay, options.live, threads - 1});
+      SemanticQueueOptions{options.semantics_delay, options.live, threads > 1});
   return std::unique_ptr<MappingRun>(new MappingRun(std::move(impl)));
 }
 

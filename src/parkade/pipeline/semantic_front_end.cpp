@@ -125,7 +125,7 @@ void SemanticFrontEnd::placeCameras(const std::vector<SE3>& T_vehicle_cam) {
 Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames) {
   using Clock = std::chrono::steady_clock;
   const auto since = [](Clock::time_point begin) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+    return millisecondsBetween(begin, Clock::now());
   };
   Impl& m = *impl_;
   Impl::View view;

@@ -4,7 +4,6 @@
 
 #include <sys/resource.h>
 
-#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -28,12 +27,16 @@ SemanticQueue::SemanticQueue(std::unique_ptr<SemanticFrontEnd> front_end, Semant
       front_end_(std::move(front_end)),
       mapper_(mapper),
       observers_(observers),
-      pool_(std::min(options.threads, 1)) {
-  if (options.live && options.threads > 0) pool_.submit(giveWay);
+      pool_(options.own_thread ? 1 : 0) {
+  if (options.live && options.own_thread) pool_.submit(giveWay);
+}
+
+bool SemanticQueue::anyDue(int number) const {
+  return !looks_.empty() && looks_.front()->number <= number - options_.delay;
 }
 
 void SemanticQueue::enterDue(int number) {
-  while (!looks_.empty() && looks_.front()->number <= number - options_.delay) {
+  while (anyDue(number)) {
     const bool ready =
         looks_.front()->done.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
     if (options_.live && !ready) return;
@@ -41,20 +44,22 @@ void SemanticQueue::enterDue(int number) {
   }
 }
 
-void SemanticQueue::offer(FrameSet& frames, int number, const PoseEstimate& odometry,
-                          const std::vector<Landmark>& landmarks, std::vector<SE3> cameras) {
-  const bool overdue = !looks_.empty() && looks_.front()->number <= number - options_.delay;
-  if (!front_end_->addOdometry(odometry, landmarks)) return;
-  if (options_.live && overdue) {
-    ++passed_over_;
-    return;
-  }
+bool SemanticQueue::wants(int number, const PoseEstimate& odometry,
+                          const std::vector<Landmark>& landmarks) {
+  if (!front_end_->addOdometry(odometry, landmarks)) return false;
+  const bool pass_over = options_.live && anyDue(number);
+  passed_over_ += pass_over ? 1 : 0;
+  return !pass_over;
+}
+
+void SemanticQueue::take(FrameSet frames, int number, const SE3& T_odom_vehicle,
+                         std::vector<SE3> cameras) {
   front_end_->take();
   mapper_.holdView();
   auto look = std::make_unique<Look>();
   look->frames = std::move(frames);
   look->number = number;
-  look->T_odom_vehicle = odometry.T_odom_vehicle;
+  look->T_odom_vehicle = T_odom_vehicle;
   look->cameras = std::move(cameras);
   look->done = pool_.submit([this, at = look.get()] { work(*at); });
   looks_.push_back(std::move(look));
@@ -83,7 +88,7 @@ void SemanticQueue::enterFirst() {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point begin = Clock::now();
   mapper_.addSemantics(*look->frame, look->views);
-  fuse_clock_.add(std::chrono::duration<double, std::milli>(Clock::now() - begin).count());
+  fuse_clock_.add(millisecondsBetween(begin, Clock::now()));
   for (PipelineObserver* observer : observers_) {
     observer->onMap({*look->frame, look->T_odom_vehicle, mapper_.localMap()});
   }

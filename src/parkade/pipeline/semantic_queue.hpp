@@ -19,9 +19,9 @@ namespace parkade {
 class PipelineObserver;
 
 struct SemanticQueueOptions {
-  int delay = 2;      ///< frame sets until features enter the map
-  bool live = false;  ///< never wait for features: pass pictures over instead
-  int threads = 1;    ///< of its own, one at most is of use; with none it works in its caller's
+  int delay = 2;           ///< frame sets until features enter the map
+  bool live = false;       ///< never wait for features: pass pictures over instead
+  bool own_thread = true;  ///< else it works in its caller's
 };
 
 /// The semantic side of a run: has pictures looked at beside everything else, and corrects the
@@ -40,10 +40,12 @@ class SemanticQueue {
 
   /// Corrects the mapper with the features that are due at frame set `number`.
   void enterDue(int number);
-  /// Sends the pictures of a frame set off, where they are due by the way driven; takes them then.
-  /// cameras: where they sit by now, empty: as the rig says.
-  void offer(FrameSet& frames, int number, const PoseEstimate& odometry,
-             const std::vector<Landmark>& landmarks, std::vector<SE3> cameras);
+  /// Takes the odometry of every frame set, in order; true where its pictures are due by the way
+  /// driven and not passed over: take() them then.
+  bool wants(int number, const PoseEstimate& odometry, const std::vector<Landmark>& landmarks);
+  /// Sends the pictures of the frame set off that was just wanted. cameras: where they sit by now,
+  /// empty: as the rig says.
+  void take(FrameSet frames, int number, const SE3& T_odom_vehicle, std::vector<SE3> cameras);
   /// Waits for all that is on its way and enters it.
   void finish();
 
@@ -65,6 +67,7 @@ class SemanticQueue {
     std::future<void> done;
   };
 
+  [[nodiscard]] bool anyDue(int number) const;
   void work(Look& look);
   void enterFirst();
 

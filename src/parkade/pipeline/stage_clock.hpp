@@ -39,6 +39,11 @@ class StageClock {
   double max_ms_ = 0.0;
 };
 
+inline double millisecondsBetween(std::chrono::steady_clock::time_point begin,
+                                  std::chrono::steady_clock::time_point end) {
+  return std::chrono::duration<double, std::milli>(end - begin).count();
+}
+
 /// Wall time during which at least one of several stages was at work. Intervals are given in the
 /// order of their begins.
 class BusyTime {
