@@ -20,7 +20,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* kFooter =
+constexpr const char* kPaperFooter =
     "Drives the routes of the paper's experiments through the simulated garage 'paper', runs "
     "every\n"
     "method on them, judges by the truth, and prints the paper's Tables 2 and 3 with its figures\n"
@@ -249,7 +249,7 @@ std::shared_ptr<PaperBenchOptions> addPaperBenchOptions(CLI::App& bench) {
   bench.add_flag("--again", o->again, "Run anew what an earlier bench did already");
   bench.add_option("--threads", o->threads, "Threads that draw and run [all processors]")
       ->check(CLI::Range(1, 64));
-  bench.footer(kFooter);
+  bench.footer(kPaperFooter);
   return o;
 }
 

@@ -25,7 +25,7 @@
 namespace parkade::cli {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kSemanticsFooter =
     "Draws garages with light, occupancy, people and camera rigs of their own, drives through "
     "them,\n"
     "and compares what the program sees with the truth. Garage seeds 5000 to 5999 are for tests;\n"
@@ -256,7 +256,8 @@ void addBenchSemantics(CLI::App& bench, int& exit_code) {
   command->add_option("--threads", arguments->threads, "Threads that draw [all processors]")
       ->check(CLI::Range(1, 256));
   command->add_option("--set", arguments->settings, "An option below, as frames=20");
-  command->footer(std::string(kFooter) + "\n\nOptions for --set (name, default, meaning):\n" +
+  command->footer(std::string(kSemanticsFooter) +
+                  "\n\nOptions for --set (name, default, meaning):\n" +
                   describeOptions(asOptions(arguments->options)));
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -39,7 +39,7 @@ struct BevArguments {
   BevOptions options;
 };
 
-constexpr const char* kFooter =
+constexpr const char* kBevFooter =
     "SEQ is a sequence folder, or sim:GARAGE/ROUTE. The pictures are DIR/<t_ns>.png: ahead is up,\n"
     "black is what no camera sees, and the own car. Without SEQ, single pictures of a rig:\n"
     "--rig and one --image per camera.\n"
@@ -222,7 +222,7 @@ void addBevCommand(CLI::App& app, int& exit_code) {
   command->add_option("--network", arguments->network,
                       "Class map of another network for --overlay (docs/networks.md)");
   command->add_option("--set", arguments->settings, "An option below, as metres_per_px=0.02");
-  command->footer(std::string(kFooter) + "\n\nOptions for --set (name, default, meaning):\n" +
+  command->footer(std::string(kBevFooter) + "\n\nOptions for --set (name, default, meaning):\n" +
                   describeOptions(asOptions(arguments->options)));
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -40,7 +40,7 @@ struct EvalArguments {
   EvaluationOptions options;
 };
 
-constexpr const char* kFooter =
+constexpr const char* kEvalFooter =
     "TRAJECTORY is a file (TUM, KITTI or EuRoC csv; the first row tells which) or the folder of a\n"
     "run (its trajectory.tum). REFERENCE is a file, or the folder of a sequence (its ground "
     "truth)\n"
@@ -245,7 +245,7 @@ void addEvalCommand(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"auto", "xy", "xz", "yz"}))
       ->capture_default_str()
       ->group("Output");
-  command->footer(kFooter);
+  command->footer(kEvalFooter);
   command->callback([a, command, &exit_code] {
     if (!command->get_subcommands().empty()) return;
     if (a->trajectory.empty()) throw CLI::RequiredError("TRAJECTORY");

@@ -22,8 +22,6 @@
 namespace parkade::cli {
 namespace {
 
-using nlohmann::json;
-
 struct MapArguments {
   std::string path;
   std::string json;
@@ -35,7 +33,7 @@ struct MapArguments {
 constexpr double kFree = 0.65;  // as map_export.hpp draws slots
 constexpr double kOccupied = 0.35;
 
-json layerJson(const ParkingMap& map, GridLayer layer) {
+nlohmann::json layerJson(const ParkingMap& map, GridLayer layer) {
   std::int64_t known = 0;
   std::int64_t present = 0;
   for (const auto& [at, tile] : map.grid.tiles(layer)) {
@@ -59,12 +57,12 @@ double graphLength(const ParkingMap& map) {
   return length;
 }
 
-json describe(const std::string& path, const ParkingMap& map) {
+nlohmann::json describe(const std::string& path, const ParkingMap& map) {
   std::error_code code;
-  json result = {{"name", map.name},
-                 {"file_bytes", std::filesystem::file_size(path, code)},
-                 {"schema_version", kMapSchemaVersion},
-                 {"resolution_m", map.grid.resolution()}};
+  nlohmann::json result = {{"name", map.name},
+                           {"file_bytes", std::filesystem::file_size(path, code)},
+                           {"schema_version", kMapSchemaVersion},
+                           {"resolution_m", map.grid.resolution()}};
   if (const auto bounds = map.grid.bounds()) {
     const Eigen::Vector2d low = map.grid.resolution() * bounds->min.cast<double>();
     const Eigen::Vector2d high =
@@ -86,7 +84,7 @@ json describe(const std::string& path, const ParkingMap& map) {
   }
   result["slots"] = {
       {"count", map.slots.size()}, {"free", free}, {"occupied", occupied}, {"numbered", numbered}};
-  result["objects"] = json::object();
+  result["objects"] = nlohmann::json::object();
   for (const MapObject& object : map.objects) {
     const std::string name(kSemanticClassNames[static_cast<std::size_t>(object.semantic_class)]);
     result["objects"][name] = result["objects"].value(name, 0) + 1;
@@ -101,7 +99,7 @@ json describe(const std::string& path, const ParkingMap& map) {
   return result;
 }
 
-std::string textOf(const std::string& path, const json& d) {
+std::string textOf(const std::string& path, const nlohmann::json& d) {
   std::string text =
       fmt::format("{}: map '{}', {:.2f} MB, cells of {} m\n", path, d["name"].get<std::string>(),
                   1e-6 * d["file_bytes"].get<double>(), d["resolution_m"].get<double>());
@@ -113,11 +111,11 @@ std::string textOf(const std::string& path, const json& d) {
     text += "  extent   no cell is known\n";
   }
   for (const std::string_view name : kGridLayerNames) {
-    const json& layer = d["layers"][std::string(name)];
+    const nlohmann::json& layer = d["layers"][std::string(name)];
     text += fmt::format("  layer    {:<14}{:>10.1f} m^2 seen,{:>9.1f} m^2 present\n", name,
                         layer["known_m2"].get<double>(), layer["present_m2"].get<double>());
   }
-  const json& slots = d["slots"];
+  const nlohmann::json& slots = d["slots"];
   text += fmt::format("  slots    {} ({} free, {} occupied, {} with a number)\n",
                       slots["count"].get<int>(), slots["free"].get<int>(),
                       slots["occupied"].get<int>(), slots["numbered"].get<int>());
@@ -125,7 +123,7 @@ std::string textOf(const std::string& path, const json& d) {
   for (const auto& [name, count] : d["objects"].items()) {
     objects += fmt::format("{}{} {}", objects.empty() ? "" : ", ", count.get<int>(), name);
   }
-  const json& graph = d["graph"];
+  const nlohmann::json& graph = d["graph"];
   text += fmt::format("  objects  {}\n", objects.empty() ? "none" : objects);
   text += fmt::format("  graph    {} nodes over {:.1f} m, {} edges, {} of them loops\n",
                       graph["nodes"].get<int>(), graph["length_m"].get<double>(),
@@ -136,11 +134,12 @@ std::string textOf(const std::string& path, const json& d) {
 Status showMap(const MapArguments& arguments) {
   const Result<ParkingMap> map = loadMap(arguments.path);
   if (!map) return map.error();
-  const json description = describe(arguments.path, *map);
+  const nlohmann::json description = describe(arguments.path, *map);
   fmt::print("{}", textOf(arguments.path, description));
   if (arguments.json.empty()) return {};
-  return writeFileAtomic(arguments.json,
-                         description.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+  return writeFileAtomic(
+      arguments.json,
+      description.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 Status checkMap(const MapArguments& arguments) {
@@ -149,7 +148,7 @@ Status checkMap(const MapArguments& arguments) {
   if (Status status = checkIntegrity(arguments.path); !status) return status;
   const std::vector<std::string> faults = findFaults(*map);
   if (!arguments.json.empty()) {
-    const json result = {{"faults", faults}};
+    const nlohmann::json result = {{"faults", faults}};
     if (Status status = writeFileAtomic(arguments.json, result.dump(2) + "\n"); !status) {
       return status;
     }

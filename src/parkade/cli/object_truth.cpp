@@ -14,8 +14,8 @@
 namespace parkade::cli {
 namespace {
 
-constexpr double kNear = 12.0;   // m: farther objects lie outside any picture
-constexpr double kRange = 10.0;  // m: objects up to here count
+constexpr double kPictureReach = 12.0;  // m: farther objects lie outside any picture
+constexpr double kRange = 10.0;         // m: objects up to here count
 
 using Polygons = std::vector<std::vector<Eigen::Vector2d>>;
 
@@ -53,7 +53,7 @@ class TruthCollector {
  private:
   [[nodiscard]] const BevGeometry& geometry() const { return sample_.bev.geometry; }
   [[nodiscard]] bool isNear(const Eigen::Vector2d& p_world) const {
-    return (T_level_world_ * p_world - geometry().center).norm() < kNear;
+    return (T_level_world_ * p_world - geometry().center).norm() < kPictureReach;
   }
 
   void addMarking(const sim::Marking& marking) {

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::vector<std::string> split(const std::string& line) {
+std::vector<std::string> cellsOf(const std::string& line) {
   std::vector<std::string> parts;
   std::stringstream stream(line);
   for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
@@ -59,9 +59,9 @@ svg::Points groundPoints(const Trajectory& poses) {
 HealthTable::HealthTable(const std::string& path) {
   std::stringstream lines(reportText(path));
   std::string line;
-  if (std::getline(lines, line)) header_ = split(line);
+  if (std::getline(lines, line)) header_ = cellsOf(line);
   while (std::getline(lines, line)) {
-    const std::vector<std::string> row = split(line);
+    const std::vector<std::string> row = cellsOf(line);
     if (row.size() == header_.size()) rows_.push_back(row);
   }
 }

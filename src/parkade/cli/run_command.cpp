@@ -38,7 +38,7 @@ struct RunArguments {
   bool real_time = false;
 };
 
-constexpr const char* kFooter =
+constexpr const char* kRunFooter =
     "SEQ is a sequence folder (docs/formats.md). OUT then holds trajectory.tum (one pose per "
     "frame\n"
     "set from the start on, as known at its instant), trajectory_vio.tum, health.csv, "
@@ -212,7 +212,7 @@ void addRunCommand(CLI::App& app, int& exit_code) {
       ->add_option("--debug-images", a->debug_images,
                    "Draw the tracks of every frame set into this folder")
       ->group("Work");
-  command->footer(kFooter);
+  command->footer(kRunFooter);
   command->callback([a, &exit_code] {
     const Status status = runSequence(*a);
     if (!status) exit_code = fail(status.error());

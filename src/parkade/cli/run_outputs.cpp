@@ -59,15 +59,6 @@ nlohmann::json timingJson(const RunSummary& summary) {
   return json;
 }
 
-double pathLength(const Trajectory& poses) {
-  double length = 0.0;
-  for (std::size_t i = 1; i < poses.size(); ++i) {
-    length +=
-        (poses[i].T_world_body.translation() - poses[i - 1].T_world_body.translation()).norm();
-  }
-  return length;
-}
-
 nlohmann::json calibrationJson(const std::string& name, const CameraCalibrationEstimate& camera) {
   const Eigen::Matrix4d T = camera.T_vehicle_cam.matrix();
   nlohmann::json json{{"camera", name}, {"time_offset_s", camera.time_offset}};

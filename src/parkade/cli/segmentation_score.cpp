@@ -30,7 +30,7 @@ const std::vector<SemanticClass> kUpright = {SemanticClass::kPillar, SemanticCla
 const std::vector<SemanticClass> kViews = {
     SemanticClass::kVehicle,    SemanticClass::kPedestrian, SemanticClass::kPillar,
     SemanticClass::kZoneMarker, SemanticClass::kGuideSign,  SemanticClass::kSpeedLimitSign};
-constexpr double kNear = 5.0;  // m from the car's middle
+constexpr double kNearMiddle = 5.0;  // m from the car's middle
 
 /// True labels in the classes that a network knows: a zone marker is part of its pillar to one that
 /// does not tell it apart, everything else unknown.
@@ -135,7 +135,7 @@ class SegmentationScore : public SampleScore {
     for (int v = 0; v < mask.rows; ++v) {
       for (int u = 0; u < mask.cols; ++u) {
         const Eigen::Vector2d p = bev.geometry.toGround(Eigen::Vector2d(u, v));
-        if ((p - bev.geometry.center).norm() > kNear) mask.at<std::uint8_t>(v, u) = 0;
+        if ((p - bev.geometry.center).norm() > kNearMiddle) mask.at<std::uint8_t>(v, u) = 0;
       }
     }
     return mask;

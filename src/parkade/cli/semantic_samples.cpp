@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "parkade/core/units.hpp"
 #include "parkade/sim/drive/frame_renderer.hpp"
 
 namespace parkade::cli {
 namespace {
 
 constexpr int kOwnCar = -1;
-constexpr double kRadPerDeg = M_PI / 180.0;
 
 /// The plane that fits the floor around the car best, in the vehicle frame: z = c0 + c1 x + c2 y.
 Eigen::Vector3d floorPlane(const sim::Garage& garage, const SE3& T_world_vehicle) {
@@ -174,7 +174,7 @@ SemanticSample SemanticSampler::draw(int index) {
                       .fork("semantic sample", static_cast<std::uint64_t>(index));
   SemanticSample sample;
   sample.t = timeOf(index, random);
-  const double turn = random.normal(0.0, options_.turn_deg * kRadPerDeg);
+  const double turn = random.normal(0.0, options_.turn_deg * kDegree);
   const double step_x = random.normal(0.0, options_.shift_m);
   const double step_y = random.normal(0.0, options_.shift_m);
   const SE3 on_drive = simulation_->T_world_vehicle(sample.t);
@@ -198,7 +198,7 @@ SemanticSample SemanticSampler::draw(int index) {
         renderer_->render(static_cast<int>(i), T_world_cam, *moment, key));
   }
   sample.true_attitude = trueAttitude(sample.T_world_vehicle);
-  const double sigma = options_.attitude_error_deg * kRadPerDeg;
+  const double sigma = options_.attitude_error_deg * kDegree;
   sample.attitude.pitch = sample.true_attitude.pitch + random.normal(0.0, sigma);
   sample.attitude.roll = sample.true_attitude.roll + random.normal(0.0, sigma);
   sample.attitude.height =

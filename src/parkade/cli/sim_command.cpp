@@ -18,7 +18,7 @@
 namespace parkade::cli {
 namespace {
 
-constexpr const char* kFooter = R"(
+constexpr const char* kSimFooter = R"(
 Examples:
   parkade sim --garage paper --route test1 --out test1
   parkade sim --route test5 --out quick --fast --duration 20
@@ -189,7 +189,7 @@ void addSimCommand(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   addSpecOptions(*command, *arguments);
   addOutputOptions(*command, *arguments);
-  command->footer(kFooter);
+  command->footer(kSimFooter);
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

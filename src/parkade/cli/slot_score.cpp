@@ -29,9 +29,9 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kReach = 8.0;  // m from the picture's middle
-constexpr double kMatch = 0.5;  // m: entrance corners nearer than this are the same
-constexpr std::array<double, 5> kBins = {0.0, 3.0, 5.0, 6.5, 8.0};
+constexpr double kSlotReach = 8.0;  // m from the picture's middle
+constexpr double kMatch = 0.5;      // m: entrance corners nearer than this are the same
+constexpr std::array<double, 5> kSlotBins = {0.0, 3.0, 5.0, 6.5, 8.0};
 
 struct TrueSlot {
   SlotObservation slot;
@@ -119,7 +119,7 @@ class SlotScore : public SampleScore {
   int matched_ = 0;
   int decided_ = 0;
   int decided_right_ = 0;
-  std::array<Bin, kBins.size() - 1> bins_;
+  std::array<Bin, kSlotBins.size() - 1> bins_;
   std::array<Count, 3> shapes_;
   std::array<Count, 4> markings_;
 };
@@ -149,7 +149,7 @@ std::vector<TrueSlot> SlotScore::trueSlots(const SemanticSampler& sampler,
       one.slot.corners[i] = (tilt * p_vehicle).head<2>();
     }
     const auto& c = one.slot.corners;
-    if ((0.5 * (c[0] + c[1]) - g.center).norm() > 1.5 * kReach) continue;
+    if ((0.5 * (c[0] + c[1]) - g.center).norm() > 1.5 * kSlotReach) continue;
     one.slot.shape = static_cast<SlotShape>(s.type);
     one.slot.marking = static_cast<SlotMarking>(s.marking);
     one.occupied = s.occupied;
@@ -163,7 +163,7 @@ std::vector<TrueSlot> SlotScore::trueSlots(const SemanticSampler& sampler,
     const auto worn = [&](const Vector2d& from, const Vector2d& to) {
       return probe.along(from, to, 0.05).paint < 0.5;
     };
-    one.counts = (c[0] - g.center).norm() < kReach && (c[1] - g.center).norm() < kReach &&
+    one.counts = (c[0] - g.center).norm() < kSlotReach && (c[1] - g.center).norm() < kSlotReach &&
                  clear(c[0], c[1]) && clear(c[0], c[0] + left) && clear(c[1], c[1] + right) &&
                  // What lies in front of the corner tells that the line ends there.
                  clear(c[0], c[0] - 0.3 * left) && clear(c[1], c[1] - 0.3 * right) &&
@@ -179,8 +179,8 @@ void SlotScore::measure(const BevGeometry& geometry, const SlotObservation& foun
     const auto i = static_cast<std::size_t>(k);
     const Vector2d error = found.corners[i] - truth.slot.corners[i];
     const double distance = (truth.slot.corners[i] - geometry.center).norm();
-    for (std::size_t b = 0; b + 1 < kBins.size(); ++b) {
-      if (distance < kBins[b] || distance >= kBins[b + 1]) continue;
+    for (std::size_t b = 0; b + 1 < kSlotBins.size(); ++b) {
+      if (distance < kSlotBins[b] || distance >= kSlotBins[b + 1]) continue;
       bins_[b].errors.push_back(error.norm());
       const Eigen::Matrix2d C = found.entrance_covariance.block<2, 2>(2 * k, 2 * k);
       bins_[b].chi2 += error.dot(C.llt().solve(error));
@@ -198,7 +198,7 @@ void SlotScore::compare(const BevGeometry& geometry, const std::vector<SlotObser
   std::vector<bool> taken(slots.size(), false);
   for (const SlotObservation& f : found) {
     const auto distance = [&](const Vector2d& p) { return (p - geometry.center).norm(); };
-    if (std::max(distance(f.corners[0]), distance(f.corners[1])) > kReach) continue;
+    if (std::max(distance(f.corners[0]), distance(f.corners[1])) > kSlotReach) continue;
     std::size_t best = slots.size();
     double best_off = kMatch;
     for (std::size_t i = 0; i < slots.size(); ++i) {
@@ -256,7 +256,7 @@ Status SlotScore::draw(const SemanticSample& sample, const BevLabels& labels, co
 }
 
 std::string SlotScore::table() const {
-  std::string text = fmt::format("Slots to {:.0f} m, from {} labels\n", kReach,
+  std::string text = fmt::format("Slots to {:.0f} m, from {} labels\n", kSlotReach,
                                  network_ ? "the network's" : "true");
   const auto out = std::back_inserter(text);
   fmt::format_to(out, "entrance in sight    {:>6}, found {:>6}: recall {:.4f}\n", visible_,
@@ -282,8 +282,8 @@ std::string SlotScore::table() const {
                    quantile(errors, 0.5), quantile(errors, 0.95),
                    chi2 / (2.0 * static_cast<double>(errors.size())));
   };
-  for (std::size_t b = 0; b + 1 < kBins.size(); ++b) {
-    row(fmt::format("  {:.1f} to {:.1f} m", kBins[b], kBins[b + 1]), bins_[b].errors,
+  for (std::size_t b = 0; b + 1 < kSlotBins.size(); ++b) {
+    row(fmt::format("  {:.1f} to {:.1f} m", kSlotBins[b], kSlotBins[b + 1]), bins_[b].errors,
         bins_[b].chi2);
   }
   row("  to 5 m", nearErrors(), bins_[0].chi2 + bins_[1].chi2);
@@ -301,12 +301,12 @@ void SlotScore::writeTo(nlohmann::json& metrics) const {
   const std::vector<double> near = nearErrors();
   slots["corner_median_to_5m"] = quantile(near, 0.5);
   slots["corner_p95_to_5m"] = quantile(near, 0.95);
-  for (std::size_t b = 0; b + 1 < kBins.size(); ++b) {
+  for (std::size_t b = 0; b + 1 < kSlotBins.size(); ++b) {
     const std::vector<double>& errors = bins_[b].errors;
     if (errors.empty()) continue;
     slots["corners"].push_back(
-        {{"from", kBins[b]},
-         {"to", kBins[b + 1]},
+        {{"from", kSlotBins[b]},
+         {"to", kSlotBins[b + 1]},
          {"count", errors.size()},
          {"median", quantile(errors, 0.5)},
          {"p95", quantile(errors, 0.95)},

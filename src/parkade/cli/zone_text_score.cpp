@@ -23,13 +23,13 @@
 namespace parkade::cli {
 namespace {
 
-constexpr double kReach = 10.0;                    // m
+constexpr double kTextReach = 10.0;                // m
 constexpr double kMaxSlant = 60.0 * M_PI / 180.0;  // as for maps: a face is legible up to there
 constexpr double kLeastInSight = 0.9;              // share of the text's area
 constexpr double kSure = 0.5;                      // readings that count as told
-constexpr std::array<double, 4> kBins = {4.0, 6.0, 8.0, kReach};
+constexpr std::array<double, 4> kTextBins = {4.0, 6.0, 8.0, kTextReach};
 
-struct Count {
+struct TextCount {
   int texts = 0;  ///< that can be read
   int right = 0;
   [[nodiscard]] double share() const { return texts > 0 ? 1.0 * right / texts : 0.0; }
@@ -64,10 +64,11 @@ class ZoneTextScore : public SampleScore {
     std::string text = "Zone text, single views: read rightly of those that can be read\n";
     const auto out = std::back_inserter(text);
     double from = 0.0;
-    for (std::size_t k = 0; k < kBins.size(); ++k) {
-      fmt::format_to(out, "{:<20} {:>8.3f} of {}\n", fmt::format("{:g} to {:g} m", from, kBins[k]),
-                     bins_[k].share(), bins_[k].texts);
-      from = kBins[k];
+    for (std::size_t k = 0; k < kTextBins.size(); ++k) {
+      fmt::format_to(out, "{:<20} {:>8.3f} of {}\n",
+                     fmt::format("{:g} to {:g} m", from, kTextBins[k]), bins_[k].share(),
+                     bins_[k].texts);
+      from = kTextBins[k];
     }
     fmt::format_to(out, "{:<20} {:>8.3f} of {}   (target 0.95)\n", "to 10 m", all().share(),
                    all().texts);
@@ -78,9 +79,9 @@ class ZoneTextScore : public SampleScore {
 
   void writeTo(nlohmann::json& metrics) const override {
     nlohmann::json& out = metrics["zone_text"];
-    for (std::size_t k = 0; k < kBins.size(); ++k) {
-      out["to_m"][fmt::format("{:g}", kBins[k])] = {{"texts", bins_[k].texts},
-                                                    {"right", bins_[k].right}};
+    for (std::size_t k = 0; k < kTextBins.size(); ++k) {
+      out["to_m"][fmt::format("{:g}", kTextBins[k])] = {{"texts", bins_[k].texts},
+                                                        {"right", bins_[k].right}};
     }
     out["texts"] = all().texts;
     out["right"] = all().right;
@@ -89,9 +90,9 @@ class ZoneTextScore : public SampleScore {
   }
 
  private:
-  [[nodiscard]] Count all() const {
-    Count sum;
-    for (const Count& bin : bins_) {
+  [[nodiscard]] TextCount all() const {
+    TextCount sum;
+    for (const TextCount& bin : bins_) {
       sum.texts += bin.texts;
       sum.right += bin.right;
     }
@@ -114,7 +115,7 @@ class ZoneTextScore : public SampleScore {
         findZoneMarkers(labels, image, sampler.bodyMask(camera), eye.camera,
                         R_level_vehicle * eye.T_vehicle_cam.rotation(), options_.faces);
     const std::vector<TrueZoneText> texts =
-        trueZoneTexts(sampler, sample, camera, true_labels, 1.5 * kReach);
+        trueZoneTexts(sampler, sample, camera, true_labels, 1.5 * kTextReach);
     std::vector<Read> reads;
     for (const ZoneMarkerSight& sight : sights) {
       for (const ZoneMarkerFace& face : sight.faces) {
@@ -129,17 +130,17 @@ class ZoneTextScore : public SampleScore {
 
   void count(const std::vector<TrueZoneText>& texts, const std::vector<Read>& reads) {
     for (const Read& read : reads) {
-      if (read.truth == nullptr || read.truth->distance > kReach) continue;
+      if (read.truth == nullptr || read.truth->distance > kTextReach) continue;
       if (read.reading.text.empty() || read.reading.probability < kSure) continue;
       ++told_.texts;
       told_.right += read.reading.text == read.truth->text ? 1 : 0;
     }
     for (const TrueZoneText& text : texts) {
-      if (text.distance > kReach || text.slant > kMaxSlant || text.in_sight < kLeastInSight) {
+      if (text.distance > kTextReach || text.slant > kMaxSlant || text.in_sight < kLeastInSight) {
         continue;
       }
       std::size_t bin = 0;
-      while (text.distance > kBins[bin]) ++bin;
+      while (text.distance > kTextBins[bin]) ++bin;
       ++bins_[bin].texts;
       // A pillar's faces bear the same text: a face that shows two of them is read once.
       bins_[bin].right += std::any_of(reads.begin(), reads.end(), [&](const Read& read) {
@@ -174,8 +175,8 @@ class ZoneTextScore : public SampleScore {
   ZoneTextScoreOptions options_;
   std::optional<SegmentationNetwork> network_;  // none: true labels
   ZoneTextReader reader_;
-  std::array<Count, kBins.size()> bins_{};
-  Count told_;
+  std::array<TextCount, kTextBins.size()> bins_{};
+  TextCount told_;
   int garage_ = 0;
 };
 

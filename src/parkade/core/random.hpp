@@ -17,6 +17,11 @@ constexpr std::uint64_t hash64(std::uint64_t a, std::uint64_t b = 0) {
   return z ^ (z >> 31);
 }
 
+/// A word's upper bits as a number in [0, 1).
+constexpr float uniformOf(std::uint64_t bits) {
+  return static_cast<float>(bits >> 40U) * (1.0F / 16777216.0F);
+}
+
 /// A seeded random source whose numbers are the same on every platform and in every build
 /// (xoshiro256++; distributions of our own, because those of <random> differ between libraries).
 class Random {

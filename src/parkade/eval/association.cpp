@@ -168,16 +168,6 @@ TimeNs longestStep(const Trajectory& trajectory, double max_gap_s) {
   return std::max(fromSeconds(max_gap_s), 3 * *middle);
 }
 
-double pathLength(const Trajectory& trajectory) {
-  double length = 0.0;
-  for (std::size_t i = 1; i < trajectory.size(); ++i) {
-    length +=
-        (trajectory[i].T_world_body.translation() - trajectory[i - 1].T_world_body.translation())
-            .norm();
-  }
-  return length;
-}
-
 Result<Association> associate(const Trajectory& estimate, const Trajectory& reference,
                               const AssociationOptions& options) {
   checkOrder(estimate, "estimate");

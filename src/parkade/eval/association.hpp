@@ -53,7 +53,4 @@ Result<Association> associate(const Trajectory& estimate, const Trajectory& refe
 /// The longest pause that is no hole: max(max_gap_s, three median steps).
 TimeNs longestStep(const Trajectory& trajectory, double max_gap_s);
 
-/// Length of the polyline through the positions, metres.
-double pathLength(const Trajectory& trajectory);
-
 }  // namespace parkade

@@ -12,12 +12,12 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kWidth = 480.0;
+constexpr double kChartWidth = 480.0;
 constexpr double kTop = 34.0;  // below the title
 constexpr double kLegendLine = 20.0;
 constexpr int kColours = 7;
 
-constexpr const char* kStyle =
+constexpr const char* kChartStyle =
     "text{font-family:'DejaVu Sans',Verdana,sans-serif;font-size:12px;fill:#333}\n"
     ".title{font-size:14px;font-weight:bold;fill:#111}\n"
     ".m{text-anchor:middle}.e{text-anchor:end}.s{text-anchor:start}\n"
@@ -73,7 +73,7 @@ double drawLegend(svg::Document* out, const std::vector<ChartLine>& lines, doubl
   double y = top + 12.0;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const double width = 34.0 + 7.6 * static_cast<double>(lines[i].name.size());
-    if (x + width > kWidth && x > 8.0) {
+    if (x + width > kChartWidth && x > 8.0) {
       x = 8.0;
       y += kLegendLine;
     }
@@ -129,7 +129,7 @@ std::string groundChart(const std::string& title, const std::optional<GroundPict
   const Bounds view = groundView(picture, lines);
   constexpr double kLeft = 40.0;
   constexpr double kTallest = 560.0;
-  const double width = kWidth - kLeft - 8.0;
+  const double width = kChartWidth - kLeft - 8.0;
   const double height = std::clamp(width * view.size().y() / view.size().x(), 60.0, kTallest);
   const Box box{kLeft, kTop, width, height};
   const double m_per_px = std::max(view.size().x() / width, view.size().y() / height);
@@ -139,7 +139,7 @@ std::string groundChart(const std::string& title, const std::optional<GroundPict
   const svg::Axis y{middle.y() - 0.5 * height * m_per_px, middle.y() + 0.5 * height * m_per_px,
                     box.bottom(), box.top};
   const double legend = drawLegend(nullptr, lines, 0.0);
-  svg::Document out(kWidth, box.bottom() + 24.0 + legend, title, kStyle);
+  svg::Document out(kChartWidth, box.bottom() + 24.0 + legend, title, kChartStyle);
   out.text({8, 20}, title, "title");
   if (!picture) drawFrame(out, box, x, y, true);
   out.beginClip({box.left, box.top}, {box.width, box.height});
@@ -163,7 +163,7 @@ std::string groundChart(const std::string& title, const std::optional<GroundPict
 
 std::string lineChart(const std::string& title, const std::string& x_name,
                       const std::vector<ChartLine>& lines) {
-  const Box box{52.0, kTop, kWidth - 60.0, 210.0};
+  const Box box{52.0, kTop, kChartWidth - 60.0, 210.0};
   Bounds bounds = boundsOf(lines);
   if (bounds.empty()) bounds.add(Vector2d::Zero());
   const svg::Axis x{bounds.low.x(), std::max(bounds.high.x(), bounds.low.x() + 1e-3), box.left,
@@ -171,7 +171,7 @@ std::string lineChart(const std::string& title, const std::string& x_name,
   const svg::Axis y{0.0, svg::roundUp(std::max(1.05 * bounds.high.y(), 1e-3)), box.bottom(),
                     box.top};
   const double legend = drawLegend(nullptr, lines, 0.0);
-  svg::Document out(kWidth, box.bottom() + 42.0 + legend, title, kStyle);
+  svg::Document out(kChartWidth, box.bottom() + 42.0 + legend, title, kChartStyle);
   out.text({8, 20}, title, "title");
   drawFrame(out, box, x, y, true);
   out.text({box.left + 0.5 * box.width, box.bottom() + 34}, x_name, "m");
@@ -193,8 +193,9 @@ std::string barChart(const std::string& title, const std::vector<ChartBar>& bars
   constexpr double kPitch = 24.0;
   double largest = 1e-9;
   for (const ChartBar& bar : bars) largest = std::max({largest, bar.value, bar.mark});
-  const double scale = (kWidth - kLeft - kRight) / largest;
-  svg::Document out(kWidth, kTop + kPitch * static_cast<double>(bars.size()) + 8.0, title, kStyle);
+  const double scale = (kChartWidth - kLeft - kRight) / largest;
+  svg::Document out(kChartWidth, kTop + kPitch * static_cast<double>(bars.size()) + 8.0, title,
+                    kChartStyle);
   out.text({8, 20}, title, "title");
   double y = kTop;
   for (const ChartBar& bar : bars) {

@@ -12,7 +12,7 @@
 namespace parkade {
 namespace {
 
-constexpr const char* kStyle =
+constexpr const char* kPageStyle =
     "body{margin:0;background:#f4f5f7;color:#1c2430;font:16px/1.5 system-ui,'DejaVu Sans',"
     "Verdana,sans-serif}\n"
     "main{max-width:1240px;margin:0 auto;padding:12px}\n"
@@ -71,7 +71,7 @@ HtmlPage::HtmlPage(std::string_view title)
           // An empty picture, or the browser asks for one.
           "<link rel=\"icon\" href=\"data:,\">\n"
           "<title>{0}</title>\n<style>\n{1}</style>\n</head>\n<body>\n<main>\n<h1>{0}</h1>\n",
-          escapedMarkup(title), kStyle)) {}
+          escapedMarkup(title), kPageStyle)) {}
 
 void HtmlPage::section(std::string_view title) {
   body_ += fmt::format("<h2>{}</h2>\n", escapedMarkup(title));

@@ -69,6 +69,8 @@ Polygon middleOf(const TruthSlot& slot) {
   return {at(0.25, 0.25), at(0.75, 0.25), at(0.75, 0.75), at(0.25, 0.75)};
 }
 
+}  // namespace
+
 bool anyNear(const cv::Mat& picture, int row, int column) {
   for (int r = std::max(0, row - 1); r <= std::min(picture.rows - 1, row + 1); ++r) {
     const std::uint8_t* cells = picture.ptr<std::uint8_t>(r);
@@ -78,8 +80,6 @@ bool anyNear(const cv::Mat& picture, int row, int column) {
   }
   return false;
 }
-
-}  // namespace
 
 LayerRaster rasteriseLayer(const LayeredGrid& grid, GridLayer layer, const SE2& T_truth_map,
                            const MapTruth& truth) {

@@ -40,6 +40,9 @@ struct LayerRaster {
 LayerRaster rasteriseLayer(const LayeredGrid& grid, GridLayer layer, const SE2& T_truth_map,
                            const MapTruth& truth);
 
+/// Whether a cell or one of its eight neighbours is not 0 in a CV_8UC1 picture.
+bool anyNear(const cv::Mat& picture, int row, int column);
+
 /// Scores it; the way, in the map's frame, says which truth is near.
 LayerScore scoreLayer(const LayerRaster& raster, double resolution,
                       const std::vector<Eigen::Vector2d>& way, double near_m);

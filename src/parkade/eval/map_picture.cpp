@@ -68,15 +68,6 @@ class Canvas {
   Eigen::Vector2i low_;
 };
 
-bool anyNear(const cv::Mat& picture, int row, int column) {
-  for (int r = std::max(0, row - 1); r <= std::min(picture.rows - 1, row + 1); ++r) {
-    for (int c = std::max(0, column - 1); c <= std::min(picture.cols - 1, column + 1); ++c) {
-      if (picture.at<std::uint8_t>(r, c) != 0) return true;
-    }
-  }
-  return false;
-}
-
 void drawLayer(const LayerRaster& raster, bool ground, Canvas& canvas) {
   for (int row = 0; row < raster.known.rows; ++row) {
     for (int column = 0; column < raster.known.cols; ++column) {

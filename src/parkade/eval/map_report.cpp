@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json toJson(const Statistics& s) {
+Json figuresJson(const Statistics& s) {
   return {{"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median},
           {"p95", s.p95},   {"max", s.max},   {"count", s.count}};
 }
@@ -25,9 +25,9 @@ Json slotsJson(const SlotScore& s) {
       {"duplicates", s.duplicates},
       {"recall", s.recall},
       {"precision", s.precision},
-      {"entrance_error_m", toJson(s.entrance_error)},
-      {"corner_error_m", toJson(s.corner_error)},
-      {"fitted_entrance_error_m", toJson(s.fitted_entrance_error)},
+      {"entrance_error_m", figuresJson(s.entrance_error)},
+      {"corner_error_m", figuresJson(s.corner_error)},
+      {"fitted_entrance_error_m", figuresJson(s.fitted_entrance_error)},
       {"availability",
        {{"accuracy", s.availability},
         {"right", s.availability_right},
@@ -43,7 +43,7 @@ Json objectJson(const ObjectScore& s) {
           {"wrong", s.wrong},
           {"recall", s.recall()},
           {"precision", s.precision()},
-          {"position_error_m", toJson(s.position_error)},
+          {"position_error_m", figuresJson(s.position_error)},
           {"texts", {{"count", s.texts}, {"right", s.texts_right}}}};
 }
 
@@ -60,8 +60,8 @@ Json layerJson(const LayerScore& s) {
 Json loopsJson(const LoopScore& s) {
   return {{"told", s.told},
           {"wrong", s.wrong},
-          {"error_m", toJson(s.error)},
-          {"turn_deg", toJson(s.turn)}};
+          {"error_m", figuresJson(s.error)},
+          {"turn_deg", figuresJson(s.turn)}};
 }
 
 std::string share(int part, int whole) {

@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kWidth = 1280.0;
+constexpr double kPlotWidth = 1280.0;
 constexpr double kHeight = 820.0;
 constexpr double kSimplifyPx = 0.3;
 // Below this coverage the reference is cut to the estimate's time: the estimate would be a speck.
@@ -25,7 +25,7 @@ constexpr double kLeastCoverage = 0.2;
 // Rounding errors are not blown up to the height of the picture; m or deg.
 constexpr double kLeastErrorAxis = 1e-3;
 
-constexpr const char* kStyle =
+constexpr const char* kPlotStyle =
     "text{font-family:'DejaVu Sans',Verdana,sans-serif;font-size:12px;fill:#333}\n"
     ".title{font-size:17px;font-weight:bold;fill:#111}\n"
     ".head{font-size:13px;font-weight:bold;fill:#222}\n"
@@ -41,7 +41,7 @@ constexpr const char* kStyle =
     ".end{fill:#111;stroke:#fff;stroke-width:1.5}\n"
     ".worst{stroke:#c8102e;stroke-width:2.5}\n";
 
-struct Box {
+struct Panel {
   double left;
   double top;
   double width;
@@ -53,10 +53,10 @@ struct Box {
   [[nodiscard]] double bottom() const { return top + height; }
 };
 
-constexpr Box kTopView{78.0, 118.0, 560.0, 640.0};
-constexpr Box kErrorBox{738.0, 118.0, 512.0, 176.0};
-constexpr Box kRotationBox{738.0, 350.0, 512.0, 176.0};
-constexpr Box kProfileBox{738.0, 582.0, 512.0, 176.0};
+constexpr Panel kTopView{78.0, 118.0, 560.0, 640.0};
+constexpr Panel kErrorBox{738.0, 118.0, 512.0, 176.0};
+constexpr Panel kRotationBox{738.0, 350.0, 512.0, 176.0};
+constexpr Panel kProfileBox{738.0, 582.0, 512.0, 176.0};
 
 // Which coordinates go right, up, and into the height profile.
 struct View {
@@ -147,8 +147,8 @@ class Plot {
                        : cut(reference, evaluation.estimate.front().t_ns,
                              evaluation.estimate.back().t_ns)),
         view_(chooseView(plane, evaluation.pairs.reference)),
-        svg_(kWidth, kHeight, fmt::format("{} against {}", labels.estimate, labels.reference),
-             kStyle) {
+        svg_(kPlotWidth, kHeight, fmt::format("{} against {}", labels.estimate, labels.reference),
+             kPlotStyle) {
     start_ns_ = e_.estimate.front().t_ns;
     TimeNs end_ns = e_.estimate.back().t_ns;
     if (!reference_.empty()) {
@@ -197,7 +197,7 @@ class Plot {
     svg_.text({28, 58}, line, "s");
   }
 
-  void frame(const Box& box, const svg::Axis& x, const svg::Axis& y, int x_ticks, int y_ticks) {
+  void frame(const Panel& box, const svg::Axis& x, const svg::Axis& y, int x_ticks, int y_ticks) {
     const auto horizontal = svg::ticks(x.low, x.high, x_ticks);
     for (const double value : horizontal.values) {
       const double px = x.pixel(value);
@@ -272,16 +272,16 @@ class Plot {
     entry("largest error", 12, [&](double left) { svg_.cross({left + 6, y}, 6, "worst"); });
   }
 
-  [[nodiscard]] svg::Axis timeAxis(const Box& box) const {
+  [[nodiscard]] svg::Axis timeAxis(const Panel& box) const {
     return {labels_.by_index ? time(start_ns_) : 0.0, end_time_, box.left, box.right()};
   }
 
-  void timeCaption(const Box& box) {
+  void timeCaption(const Panel& box) {
     svg_.text({box.left + 0.5 * box.width, box.bottom() + 38},
               labels_.by_index ? "number of the pose" : "time from the start (s)", "m");
   }
 
-  void errorOverTime(const Box& box, const char* title, const std::vector<double>& errors,
+  void errorOverTime(const Panel& box, const char* title, const std::vector<double>& errors,
                      double rmse, bool mark_worst) {
     const double largest = *std::max_element(errors.begin(), errors.end());
     const svg::Axis x = timeAxis(box);
@@ -305,7 +305,7 @@ class Plot {
   }
 
   void profile() {
-    const Box& box = kProfileBox;
+    const Panel& box = kProfileBox;
     Range range = rangeOf(e_.estimate, view_.height);
     for (const auto& pose : reference_) range.add(pose.T_world_body.translation()[view_.height]);
     // A flat floor stays flat: noise below a few centimetres is not blown up.

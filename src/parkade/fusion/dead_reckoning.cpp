@@ -5,18 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "parkade/core/units.hpp"
 #include "parkade/geometry/se2.hpp"
 
 namespace parkade {
-namespace {
-
-constexpr double kDegree = M_PI / 180.0;
-
-double square(double x) {
-  return x * x;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 DeadReckoning::DeadReckoning(const SE3& T_vehicle_imu, const DeadReckoningOptions& options)
     : T_vehicle_imu_(T_vehicle_imu), options_(options) {}

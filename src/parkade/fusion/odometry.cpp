@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "parkade/core/units.hpp"
+
 namespace parkade {
 namespace {
 
@@ -35,7 +37,6 @@ PlanarIncrement planarIncrement(const PoseEstimate& before, const PoseEstimate& 
   const double seconds = std::max(0.0, toSeconds(after.t_ns - before.t_ns));
   const bool weak = after.health == Health::kDegraded || after.health == Health::kLost;
   const double factor = weak ? options.degraded_factor * options.degraded_factor : 1.0;
-  constexpr double kDegree = M_PI / 180.0;
   // A turn on the spot is no less drift than its arc at a car's turning radius.
   constexpr double kTurningRadius = 5.0;
   const double way = distance + kTurningRadius * std::abs(result.T_before_after.angle());

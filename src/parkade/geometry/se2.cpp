@@ -7,11 +7,11 @@
 namespace parkade {
 namespace {
 
-constexpr double kSmallAngle = 1e-3;
+constexpr double kSmallTurn = 1e-3;
 
 // sin(a)/a and (1 - cos a)/a.
 Eigen::Vector2d sincCoefficients(double a) {
-  if (std::abs(a) < kSmallAngle) {
+  if (std::abs(a) < kSmallTurn) {
     const double a2 = a * a;
     return {1.0 - a2 / 6.0 + a2 * a2 / 120.0, a * (0.5 - a2 / 24.0 + a2 * a2 / 720.0)};
   }

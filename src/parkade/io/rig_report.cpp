@@ -37,11 +37,11 @@ SO3 bodyAxes() {
   return SO3(R_cam_body);
 }
 
+}  // namespace
+
 nlohmann::json vectorJson(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
-
-}  // namespace
 
 FieldOfView fieldOfView(const Camera& camera) {
   Eigen::Vector2d centre;

@@ -31,5 +31,7 @@ ViewDirection viewDirection(const SE3& T_vehicle_cam);
 /// The rig for a reader at a terminal: cameras, IMU, vehicle.
 std::string rigText(const Rig& rig);
 nlohmann::json rigJson(const Rig& rig);
+/// [x, y, z]
+nlohmann::json vectorJson(const Eigen::Vector3d& v);
 
 }  // namespace parkade

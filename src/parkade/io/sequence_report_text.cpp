@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "parkade/io/csv.hpp"
+#include "parkade/io/rig_report.hpp"
 #include "parkade/io/sequence_report.hpp"
 
 namespace parkade {
@@ -13,10 +14,6 @@ namespace {
 
 std::string vectorText(const Eigen::Vector3d& v) {
   return fmt::format("{:.4f} {:.4f} {:.4f}", v.x(), v.y(), v.z());
-}
-
-nlohmann::json vectorJson(const Eigen::Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
 }
 
 const char* nameOf(CheckMark mark) {

@@ -57,7 +57,7 @@ constexpr const char* kStateHeader =
     "b_w_RS_S_y [rad s^-1],b_w_RS_S_z [rad s^-1],b_a_RS_S_x [m s^-2],b_a_RS_S_y [m s^-2],"
     "b_a_RS_S_z [m s^-2]\n";
 
-std::string vectorText(const Eigen::Vector3d& v) {
+std::string csvText(const Eigen::Vector3d& v) {
   return fmt::format("{},{},{}", v.x(), v.y(), v.z());
 }
 
@@ -216,7 +216,7 @@ Status SequenceWriter::write(const ImuSample& sample) {
                 finished_);
   last_imu_ = sample.t_ns;
   return imu_->append(
-      fmt::format("{},{},{}\n", sample.t_ns, vectorText(sample.gyro), vectorText(sample.accel)));
+      fmt::format("{},{},{}\n", sample.t_ns, csvText(sample.gyro), csvText(sample.accel)));
 }
 
 Status SequenceWriter::write(const WheelSample& sample) {
@@ -330,9 +330,8 @@ Status writeGroundTruth(const std::string& sequence, const std::vector<GroundTru
   for (const GroundTruthState& state : states) {
     const Eigen::Quaterniond& q = state.T_world_body.rotation().quaternion();
     fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{}\n", state.t_ns,
-                   vectorText(state.T_world_body.translation()), q.w(), q.x(), q.y(), q.z(),
-                   vectorText(state.velocity), vectorText(state.bias_gyro),
-                   vectorText(state.bias_accel));
+                   csvText(state.T_world_body.translation()), q.w(), q.x(), q.y(), q.z(),
+                   csvText(state.velocity), csvText(state.bias_gyro), csvText(state.bias_accel));
   }
   if (Status status = writeFileAtomic(joinPath(folder, "data.csv"), text); !status) return status;
   return writeFileAtomic(joinPath(folder, "sensor.yaml"), groundTruthSensorYaml());

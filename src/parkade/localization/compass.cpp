@@ -6,10 +6,10 @@
 #include <cmath>
 #include <vector>
 
+#include "parkade/core/units.hpp"
+
 namespace parkade {
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 // Into (-45, 45] degrees.
 double wrapQuarter(double angle) {

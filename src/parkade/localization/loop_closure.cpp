@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "parkade/core/units.hpp"
+
 namespace parkade {
 namespace {
 
@@ -100,7 +102,6 @@ LoopResult searchInSubmap(const SemanticFrame& frame, const Submap& submap, cons
     result.reason = "no lines are seen";
     return result;
   }
-  constexpr double kDegree = M_PI / 180.0;
   const int steps = static_cast<int>(std::ceil(reach / loop.step_m));
   const int turns = std::min(
       5, static_cast<int>(std::ceil(std::max(0.0, 3.0 * sigma_rad - 0.5 * loop.step_deg * kDegree) /

@@ -8,12 +8,13 @@
 #include <unordered_map>
 
 #include "parkade/core/check.hpp"
+#include "parkade/core/units.hpp"
 #include "parkade/mapping/layer_update.hpp"
 
 namespace parkade {
 namespace {
 
-struct Picture {
+struct PackedPicture {
   std::int64_t anchor = 0;
   SE2 T_anchor_vehicle;
   TimeNs t_ns = 0;
@@ -22,8 +23,8 @@ struct Picture {
   std::vector<PackedLabels::Box> moving;
 };
 
-Picture compress(const PackedLabels& labels) {
-  Picture picture;
+PackedPicture compress(const PackedLabels& labels) {
+  PackedPicture picture;
   picture.geometry = labels.geometry;
   picture.moving = labels.moving;
   picture.packed.resize(ZSTD_compressBound(labels.pixels.size()));
@@ -35,7 +36,7 @@ Picture compress(const PackedLabels& labels) {
   return picture;
 }
 
-PackedLabels expand(const Picture& picture) {
+PackedLabels expand(const PackedPicture& picture) {
   PackedLabels labels;
   labels.geometry = picture.geometry;
   labels.moving = picture.moving;
@@ -96,7 +97,7 @@ struct GlobalMap::Impl {
   GlobalMapOptions options;
   EvidenceKernel kernel;
   LayeredGrid grid;
-  std::vector<Picture> pictures;
+  std::vector<PackedPicture> pictures;
   std::unordered_map<std::int64_t, SE2> anchors;  // newest poses
   std::unordered_map<std::int64_t, SE2> entered;  // poses that the grid was made with
   // A rebuild under way: the new grid, the poses it is made with, and the next picture.
@@ -144,7 +145,7 @@ const SE2& GlobalMap::Impl::anchorOf(const std::unordered_map<std::int64_t, SE2>
 void GlobalMap::Impl::rebuildSome(std::size_t count) {
   if (!next_grid) return;
   for (std::size_t k = 0; k < count && next_picture < pictures.size(); ++k, ++next_picture) {
-    const Picture& picture = pictures[next_picture];
+    const PackedPicture& picture = pictures[next_picture];
     const double since =
         next_picture == 0 ? 0.0 : toSeconds(picture.t_ns - pictures[next_picture - 1].t_ns);
     // Anchors made since the rebuild began keep the newest pose.
@@ -173,13 +174,12 @@ bool GlobalMap::update(const PackedLabels& labels, TimeNs t_ns, std::int64_t anc
   if (m.last_pose) {
     since = toSeconds(t_ns - m.last_t_ns);
     const SE2 step = m.last_pose->inverse() * T_map_vehicle;
-    constexpr double kDegree = M_PI / 180.0;
     if (step.translation().norm() < m.options.distance_m &&
         std::abs(step.angle()) < m.options.rotation_deg * kDegree && since < m.options.interval_s) {
       return false;
     }
   }
-  Picture picture = compress(labels);
+  PackedPicture picture = compress(labels);
   picture.anchor = anchor;
   picture.T_anchor_vehicle = T_anchor_vehicle;
   picture.t_ns = t_ns;
@@ -232,7 +232,7 @@ int GlobalMap::pictures() const {
 }
 std::size_t GlobalMap::pictureBytes() const {
   std::size_t bytes = 0;
-  for (const Picture& picture : impl_->pictures) bytes += picture.packed.size();
+  for (const PackedPicture& picture : impl_->pictures) bytes += picture.packed.size();
   return bytes;
 }
 

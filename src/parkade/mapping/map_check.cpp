@@ -16,7 +16,7 @@ namespace {
 
 using Polygon = std::vector<Eigen::Vector2d>;
 
-constexpr double kFarthest = 1e5;  // m; no garage is that large
+constexpr double kMaxCoordinate = 1e5;  // m; no garage is that large
 
 Polygon counterClockwise(Polygon polygon) {
   if (signedArea(polygon) < 0.0) std::reverse(polygon.begin(), polygon.end());
@@ -41,7 +41,7 @@ Polygon clip(const Polygon& polygon, const Eigen::Vector2d& a, const Eigen::Vect
 
 bool near(const MapSlot& slot) {
   return std::all_of(slot.corners.begin(), slot.corners.end(), [](const Eigen::Vector2d& p) {
-    return p.allFinite() && p.cwiseAbs().maxCoeff() < kFarthest;
+    return p.allFinite() && p.cwiseAbs().maxCoeff() < kMaxCoordinate;
   });
 }
 
@@ -51,7 +51,7 @@ void checkSlots(const ParkingMap& map, std::vector<std::string>& faults) {
   for (const MapSlot& slot : map.slots) {
     if (!ids.insert(slot.id).second) faults.push_back(fmt::format("slot {}: id repeats", slot.id));
     if (!near(slot)) {
-      faults.push_back(fmt::format("slot {}: lies farther than {} m", slot.id, kFarthest));
+      faults.push_back(fmt::format("slot {}: lies farther than {} m", slot.id, kMaxCoordinate));
       continue;
     }
     const double area = std::abs(signedArea({slot.corners.begin(), slot.corners.end()}));
@@ -143,8 +143,8 @@ std::vector<std::string> findFaults(const ParkingMap& map) {
     if (!ids.insert(object.id).second) {
       faults.push_back(fmt::format("object {}: id repeats", object.id));
     }
-    if (!object.position.allFinite() || object.position.cwiseAbs().maxCoeff() >= kFarthest) {
-      faults.push_back(fmt::format("object {}: lies farther than {} m", object.id, kFarthest));
+    if (!object.position.allFinite() || object.position.cwiseAbs().maxCoeff() >= kMaxCoordinate) {
+      faults.push_back(fmt::format("object {}: lies farther than {} m", object.id, kMaxCoordinate));
     }
   }
   checkGraph(map, faults);

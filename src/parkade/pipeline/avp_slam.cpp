@@ -11,13 +11,12 @@
 
 #include "parkade/core/check.hpp"
 #include "parkade/core/log.hpp"
+#include "parkade/core/units.hpp"
 #include "parkade/mapping/pose_graph.hpp"
 #include "parkade/pipeline/anchored_history.hpp"
 
 namespace parkade {
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 struct LocalPoints {
   std::int64_t id = 0;

@@ -8,14 +8,11 @@
 #include <utility>
 
 #include "parkade/core/check.hpp"
+#include "parkade/core/units.hpp"
 #include "parkade/pipeline/fused_mapper_impl.hpp"
 
 namespace parkade {
-namespace {
-
-constexpr double kDegree = M_PI / 180.0;
-
-}  // namespace
+namespace {}  // namespace
 
 PoseEstimate FusedMapper::Impl::estimate() const {
   PoseEstimate e = *odometry;

@@ -5,12 +5,11 @@
 #include <cmath>
 
 #include "parkade/core/log.hpp"
+#include "parkade/core/units.hpp"
 #include "parkade/pipeline/fused_mapper_impl.hpp"
 
 namespace parkade {
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 // Adds a covariance that all measurements with this one share: only in its observable directions.
 Eigen::Matrix3d withSharedNoise(const Eigen::Matrix3d& information, const Eigen::Matrix3d& shared) {

@@ -12,7 +12,7 @@
 namespace parkade {
 namespace {
 
-constexpr double kGate = 9.21;        // 99 % of chi-square, 2 degrees
+constexpr double kAgentGate = 9.21;   // 99 % of chi-square, 2 degrees
 constexpr double kCarLength = 4.5;    // m
 constexpr double kCarWidth = 1.8;     // m
 constexpr double kWidestFront = 2.3;  // m: longer faces are sides
@@ -124,7 +124,7 @@ std::vector<MovingObservation> AgentTracker::update(const std::vector<AgentDetec
           tracks_[k].covariance.topLeftCorner<2, 2>() + measurements[d].covariance;
       const Eigen::Vector2d off = measurements[d].p_odom - tracks_[k].state.head<2>();
       const double distance = off.dot(S.llt().solve(off));
-      if (distance < kGate) pairs.emplace_back(distance, d, k);
+      if (distance < kAgentGate) pairs.emplace_back(distance, d, k);
     }
   }
   std::sort(pairs.begin(), pairs.end());

@@ -41,7 +41,7 @@ SemanticClass classOf(const YamlNode& node) {
   return static_cast<SemanticClass>(it - kSemanticClassNames.begin());
 }
 
-ClassMap parse(const YamlNode& root, const std::string& path) {
+ClassMap parseClassMap(const YamlNode& root, const std::string& path) {
   root.allowOnly({"network", "input", "classes"});
   ClassMap map;
   map.path = path;
@@ -76,7 +76,8 @@ ClassMap parse(const YamlNode& root, const std::string& path) {
 }  // namespace
 
 Result<ClassMap> readClassMap(const std::string& path) {
-  return parseYamlFile<ClassMap>(path, [&](const YamlNode& root) { return parse(root, path); });
+  return parseYamlFile<ClassMap>(path,
+                                 [&](const YamlNode& root) { return parseClassMap(root, path); });
 }
 
 Result<std::string> namedOrOwnModel(const std::string& path, const std::string& own_name) {

@@ -13,8 +13,8 @@
 namespace parkade {
 namespace {
 
-constexpr int kMaxGap = 4;         // rows that a line may miss
-constexpr std::size_t kReach = 6;  // runs on each side of a local fit
+constexpr int kMaxGap = 4;            // rows that a line may miss
+constexpr std::size_t kFitReach = 6;  // runs on each side of a local fit
 
 bool isLine(std::uint8_t label) {
   return label == static_cast<std::uint8_t>(SemanticClass::kSlotLine) ||
@@ -78,8 +78,8 @@ bool hidesFloor(SemanticClass semantic_class) {
 }
 
 void LineChain::fitAround(std::size_t index, double& center, double& slope) const {
-  const std::size_t first = index > kReach ? index - kReach : 0;
-  const std::size_t last = std::min(runs.size() - 1, index + kReach);
+  const std::size_t first = index > kFitReach ? index - kFitReach : 0;
+  const std::size_t last = std::min(runs.size() - 1, index + kFitReach);
   double n = 0.0;
   double r = 0.0;
   double c = 0.0;

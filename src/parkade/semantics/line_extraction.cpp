@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "parkade/core/check.hpp"
+#include "parkade/core/units.hpp"
 #include "parkade/semantics/line_chains.hpp"
 #include "parkade/semantics/line_segments.hpp"
 #include "parkade/semantics/tilt_error.hpp"
@@ -236,8 +237,7 @@ Lines extractLines(const BevImage& bev, const BevLabels& labels, double attitude
                 bev.image.cols, bev.image.rows);
   cv::Mat grey = bev.image;
   if (bev.image.channels() == 3) cv::cvtColor(bev.image, grey, cv::COLOR_BGR2GRAY);
-  constexpr double kRadians = M_PI / 180.0;
-  const double tilt_sigma = std::hypot(attitude_sigma, options.sight_sigma_deg * kRadians);
+  const double tilt_sigma = std::hypot(attitude_sigma, options.sight_sigma_deg * kDegree);
   const Measurer measurer(grey, labels, tilt_sigma, options);
   std::vector<MeasuredLine> measured;
   measurer.run(false, measured);

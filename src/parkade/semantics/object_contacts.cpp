@@ -14,7 +14,7 @@ namespace {
 
 // Ground must be seen this far before an edge, px, and also beside: the sides of a smear run along
 // the sight lines, and are no edges at the floor.
-constexpr double kReach = 3.0;
+constexpr double kSightReach = 3.0;
 constexpr int kBorder = 5;  // px
 
 bool sameThing(SemanticClass label, SemanticClass wanted) {
@@ -69,8 +69,8 @@ ContactFinder::ContactFinder(const BevGeometry& geometry, const BevViews& views)
       const auto index = views.view_of.at<std::uint8_t>(v, u);
       if (index >= views.views.size()) continue;
       const Eigen::Vector2d d = geometry.toPixel(views.views[index].foot) - Eigen::Vector2d(u, v);
-      if (d.norm() < kReach + 1.0) continue;
-      const Eigen::Vector2d step = kReach * d.normalized();
+      if (d.norm() < kSightReach + 1.0) continue;
+      const Eigen::Vector2d step = kSightReach * d.normalized();
       const Eigen::Vector2d side = Eigen::Vector2d(-d.y(), d.x()).normalized();
       for (int k = 0; k < 3; ++k) {
         const Eigen::Vector2d at = step + (k - 1) * side;

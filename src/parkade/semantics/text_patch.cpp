@@ -6,14 +6,10 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "parkade/core/units.hpp"
+
 namespace parkade {
-namespace {
-
-double square(double value) {
-  return value * value;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 cv::Mat sampleTextPatch(const cv::Mat& image, int fine,
                         const std::function<Eigen::Vector2d(double, double)>& pixel_at) {

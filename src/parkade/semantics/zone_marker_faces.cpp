@@ -74,7 +74,7 @@ std::vector<Blob> findBlobs(const cv::Mat& labels, const cv::Mat& mask, Semantic
 }
 
 /// The outline's columns, one pixel of the label picture wide.
-struct Outline {
+struct FaceOutline {
   std::vector<MarkerColumn> columns;
   double x_left = 0.0;
   double x_right = 0.0;
@@ -98,7 +98,7 @@ void dropPartialEnds(std::vector<MarkerColumn>& columns, double step) {
 }
 
 // size: of a label pixel in the level view.
-Outline outlineOf(const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& size) {
+FaceOutline outlineOf(const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& size) {
   const double pixel = size.x();
   const auto [low, high] = std::minmax_element(
       points.begin(), points.end(), [](const auto& a, const auto& b) { return a.x() < b.x(); });
@@ -113,7 +113,7 @@ Outline outlineOf(const std::vector<Eigen::Vector2d>& points, const Eigen::Vecto
     c.bottom = std::min(c.bottom, p.y());
     c.top = std::max(c.top, p.y());
   }
-  Outline outline;
+  FaceOutline outline;
   double tallest = 0.0;
   for (std::size_t k = 0; k < bins; ++k) {
     columns[k].bottom -= 0.5 * size.y();
@@ -169,7 +169,7 @@ std::optional<MeasuredSight> measure(const Blob& blob, const LabelScale& labels,
     if (view.look(labels.toImage(p.x, p.y), xv)) points.push_back(xv);
   }
   if (points.empty()) return std::nullopt;
-  const Outline outline = outlineOf(points, pixel);
+  const FaceOutline outline = outlineOf(points, pixel);
   const FittedMarker marker =
       fitMarker(outline.columns, outline.x_left, outline.x_right, 0.5 * pixel.y(), corners);
   const double x = 0.5 * (outline.x_left + outline.x_right);

@@ -7,20 +7,15 @@
 #include <limits>
 
 #include "parkade/core/check.hpp"
+#include "parkade/core/units.hpp"
 
 namespace parkade {
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 // 1 / depth along a line through the column x0, relative to that at x0: equation (2). The line runs
 // along (cos angle, sin angle) in (right, ahead).
 double relativeHeight(double x, double x0, double cosine, double sine) {
   return (cosine - x * sine) / (cosine - x0 * sine);
-}
-
-double square(double value) {
-  return value * value;
 }
 
 struct Fit {

@@ -13,7 +13,7 @@
 namespace parkade {
 namespace {
 
-constexpr double kGate = 16.27;  // 99.9 % of chi-square, 3 degrees
+constexpr double kMarkerGate = 16.27;  // 99.9 % of chi-square, 3 degrees
 
 using Jacobian = Eigen::Matrix<double, 3, 4>;
 
@@ -117,7 +117,7 @@ ZoneMarker markerOf(std::uint64_t id, const Solution& solution, const TextEviden
 
 double ZoneMarkerTracker::misfit(const Track& track, const ZoneMarkerView& view) const {
   const Residual r = residualOf(view, track.state, options_.place_sigma_m);
-  if (!r.valid) return kGate;
+  if (!r.valid) return kMarkerGate;
   const Eigen::Matrix3d S = Eigen::Matrix3d::Identity() +
                             r.d_value_d_state * track.covariance * r.d_value_d_state.transpose();
   return r.value.dot(S.llt().solve(r.value));
@@ -158,7 +158,7 @@ void ZoneMarkerTracker::add(const std::vector<ZoneMarkerView>& views, TimeNs t_n
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     for (std::size_t j = 0; j < views.size(); ++j) {
       const double value = misfit(tracks_[i], views[j]);
-      if (value < kGate) pairs.push_back({value, i, j});
+      if (value < kMarkerGate) pairs.push_back({value, i, j});
     }
   }
   std::stable_sort(pairs.begin(), pairs.end(),

@@ -26,7 +26,7 @@ struct TextNetworkFile {
   double scale = 1.0;
 };
 
-TextNetworkFile parse(const YamlNode& root, const std::string& path) {
+TextNetworkFile parseTextNetwork(const YamlNode& root, const std::string& path) {
   root.allowOnly({"network", "input", "letters"});
   TextNetworkFile file;
   file.network =
@@ -95,8 +95,8 @@ const std::string& ZoneTextReader::letters() const {
 }
 
 Result<ZoneTextReader> ZoneTextReader::load(const std::string& path) {
-  Result<TextNetworkFile> file =
-      parseYamlFile<TextNetworkFile>(path, [&](const YamlNode& root) { return parse(root, path); });
+  Result<TextNetworkFile> file = parseYamlFile<TextNetworkFile>(
+      path, [&](const YamlNode& root) { return parseTextNetwork(root, path); });
   if (!file) return file.error();
   auto impl = std::make_unique<Impl>();
   impl->file = std::move(file).value();

@@ -14,6 +14,8 @@ namespace parkade::sim {
 
 // Reading textures: texels of four values, cells, mip levels. These run several times per ray.
 
+inline constexpr float kTexelScale = 127.0F;  ///< of stored values: 1.0 is stored as 127
+
 /// Rounds down. Without SSE 4.1, std::floor is a call; this is two instructions. For |x| < 2^31.
 inline int floorToInt(float x) {
   const int truncated = static_cast<int>(x);

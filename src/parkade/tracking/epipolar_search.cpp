@@ -53,7 +53,7 @@ struct Node {
 };
 
 // The feature and two neighbours of it, as rays of a: a small plane across the ray.
-struct Rays {
+struct PatchRays {
   Eigen::Vector3d centre;
   Eigen::Vector3d right;
   Eigen::Vector3d below;
@@ -61,8 +61,8 @@ struct Rays {
 
 constexpr double kNeighbourPx = 4.0;
 
-std::optional<Rays> raysAround(const Camera& camera, const Eigen::Vector2d& pixel) {
-  Rays rays;
+std::optional<PatchRays> raysAround(const Camera& camera, const Eigen::Vector2d& pixel) {
+  PatchRays rays;
   if (!camera.unproject(pixel, rays.centre) ||
       !camera.unproject(pixel + Eigen::Vector2d(kNeighbourPx, 0.0), rays.right) ||
       !camera.unproject(pixel + Eigen::Vector2d(0.0, kNeighbourPx), rays.below)) {
@@ -71,7 +71,7 @@ std::optional<Rays> raysAround(const Camera& camera, const Eigen::Vector2d& pixe
   return rays;
 }
 
-Node projectNode(const Camera& b, const SE3& T_b_a, const Rays& rays, double inverse_depth) {
+Node projectNode(const Camera& b, const SE3& T_b_a, const PatchRays& rays, double inverse_depth) {
   Node node;
   node.inverse_depth = inverse_depth;
   const Eigen::Vector3d shift = inverse_depth * T_b_a.translation();
@@ -107,7 +107,7 @@ double correlate(const SearchImage& b, const Pattern& wanted, const Eigen::Vecto
   return dot(wanted, seen);
 }
 
-std::vector<Place> walkCurve(const SearchImage& b, const SE3& T_b_a, const Rays& rays,
+std::vector<Place> walkCurve(const SearchImage& b, const SE3& T_b_a, const PatchRays& rays,
                              const Pattern& wanted, double from, double to) {
   std::vector<Place> places;
   Node last;
@@ -184,7 +184,7 @@ std::optional<CrossMatch> searchEpipolar(const SearchImage& a, const SearchImage
                                          const SE3& T_b_a, const Eigen::Vector2d& pixel_a,
                                          const Eigen::Matrix2d& warp_a, const Patch& patch,
                                          double known_depth, const MatchingOptions& options) {
-  const std::optional<Rays> rays = raysAround(*a.camera, pixel_a);
+  const std::optional<PatchRays> rays = raysAround(*a.camera, pixel_a);
   Pattern wanted;
   if (!rays ||
       !sampleGrid(a.coarse, 0.5 * pixel_a, Eigen::Matrix2d::Identity(), kRadius, 1.0,

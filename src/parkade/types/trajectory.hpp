@@ -17,4 +17,15 @@ struct StampedPose {
 /// Poses in the order of time.
 using Trajectory = std::vector<StampedPose>;
 
+/// Length of the polyline through the positions, metres.
+inline double pathLength(const Trajectory& trajectory) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    length +=
+        (trajectory[i].T_world_body.translation() - trajectory[i - 1].T_world_body.translation())
+            .norm();
+  }
+  return length;
+}
+
 }  // namespace parkade

@@ -265,7 +265,7 @@ void VioEstimator::Impl::continueFromLast(std::vector<NavState>& states, StartPr
   if (!has_last_run_) return;
   // Heading and position go on from where the last window ended; what happened between is unknown.
   // The states are level; odom may not be, so they are tilted as its vertical is known to be.
-  const SO3 tilt(Eigen::Quaterniond::FromTwoVectors(-Eigen::Vector3d::UnitZ(), last_run_gravity_));
+  const SO3 tilt = SO3::fromTwoVectors(-Eigen::Vector3d::UnitZ(), last_run_gravity_);
   const SE3 last = SE3(last_run_state_.R_odom_imu, last_run_state_.p_odom) * window_.T_imu_vehicle;
   const double heading = (tilt.inverse() * last.rotation()).yaw();
   const SO3 turn = tilt * SO3::fromYawPitchRoll(heading, 0.0, 0.0);

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include "parkade/vio/estimator_impl.hpp"
+
+#include "parkade/core/units.hpp"
 
 namespace parkade {
 namespace {
 
-constexpr double kRad = std::numbers::pi / 180.0;
 // Longer readings are not summed up again at every frame: the frame between goes into the prior.
 constexpr double kMaxSummed = 1.0;  // s
 
@@ -59,12 +59,12 @@ bool VioEstimator::Impl::wantsKeyframe(std::size_t index) const {
   if (shared < options_.keyframe.min_overlap * seen) return true;
   const auto middle = parallax.begin() + static_cast<std::ptrdiff_t>(parallax.size() / 2);
   std::nth_element(parallax.begin(), middle, parallax.end());
-  if (*middle > options_.keyframe.parallax_deg * kRad) return true;
+  if (*middle > options_.keyframe.parallax_deg * kDegree) return true;
   if ((frame.state.p_odom - keyframe.state.p_odom).norm() > options_.keyframe.distance_m) {
     return true;
   }
   if (angleBetween(frame.state.R_odom_imu, keyframe.state.R_odom_imu) >
-      options_.keyframe.rotation_deg * kRad) {
+      options_.keyframe.rotation_deg * kDegree) {
     return true;
   }
   return toSeconds(frame.t_ns - keyframe.t_ns) > options_.keyframe.max_interval_s;

@@ -18,7 +18,7 @@ SE3 moved(const NavState& state, const Vector15d& delta) {
 
 // Turns gravity downwards, without a turn about the vertical.
 SO3 levelOf(const Eigen::Vector3d& gravity) {
-  return SO3(Eigen::Quaterniond::FromTwoVectors(gravity, -Eigen::Vector3d::UnitZ()));
+  return SO3::fromTwoVectors(gravity, -Eigen::Vector3d::UnitZ());
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 namespace parkade {
 namespace {
 
-constexpr int kState = 15;
 // Noise may push a far point beyond infinity. Stopping it at zero would pull all far points, and
 // with them the scale, to one side; the projection is smooth there.
 constexpr double kMinInverseDistance = -0.1;

@@ -10,8 +10,6 @@
 namespace parkade {
 namespace {
 
-constexpr Eigen::Index kState = 15;
-
 // Removes a frame's observations; features keep their point through another anchor, if any.
 void eraseObservations(Window& window, int frame_id) {
   for (auto it = window.features.begin(); it != window.features.end();) {

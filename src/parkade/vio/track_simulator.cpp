@@ -10,6 +10,7 @@
 #include <set>
 
 #include "parkade/core/random.hpp"
+#include "parkade/core/units.hpp"
 
 namespace parkade::testing {
 namespace {
@@ -287,10 +288,9 @@ std::vector<ImuSample> makeImu(const Rig& rig, const SplineSE3& truth, TimeNs be
 }
 
 SE3 lookAt(const Vector3d& position, double yaw_deg, double pitch_down_deg) {
-  constexpr double kRad = std::numbers::pi / 180.0;
   Eigen::Matrix3d R_forward;  // camera axes (right, down, forward) in a frame that looks along x
   R_forward << 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0;
-  return {SO3::fromYawPitchRoll(yaw_deg * kRad, pitch_down_deg * kRad, 0.0) * SO3(R_forward),
+  return {SO3::fromYawPitchRoll(yaw_deg * kDegree, pitch_down_deg * kDegree, 0.0) * SO3(R_forward),
           position};
 }
 

@@ -17,7 +17,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kNoiseMargin = 4.0;  // parallax that noise alone does not make, in its sigmas
-constexpr double kMinInverseDistance = -0.05;  // far points and noise
+constexpr double kLeastInverseDistance = -0.05;  // far points and noise
 constexpr int kIterations = 6;
 
 struct View {
@@ -120,7 +120,7 @@ bool triangulate(const Window& window, WindowFeature& feature, const Triangulati
     if (!step.allFinite()) return false;
     direction = (direction + tangentBasis(direction) * step.head<2>()).normalized();
     inverse_distance =
-        std::clamp(inverse_distance + step.z(), kMinInverseDistance, 1.0 / limits.min_distance);
+        std::clamp(inverse_distance + step.z(), kLeastInverseDistance, 1.0 / limits.min_distance);
     if (b.dot(step) > -1e-4) break;
   }
   if (!evaluate(window, views, direction, inverse_distance, H, b, worst, sum) ||

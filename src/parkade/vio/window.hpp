@@ -37,6 +37,8 @@ struct CameraRefinement {
   Vector7d delta = Vector7d::Zero();
 };
 
+inline constexpr int kState = 15;  ///< size of a frame's tangent
+
 /// One frame set in the window. Its tangent is that of Preintegration: position (odom axes),
 /// rotation (right perturbation), velocity, gyro bias, accelerometer bias.
 struct WindowFrame {

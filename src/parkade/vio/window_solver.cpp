@@ -13,7 +13,6 @@
 namespace parkade {
 namespace {
 
-constexpr int kState = 15;
 constexpr double kMaxDamping = 1e6;
 
 // What a step changes, to be able to take it back.

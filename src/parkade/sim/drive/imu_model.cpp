@@ -3,13 +3,11 @@
 #include "parkade/sim/drive/imu_model.hpp"
 
 #include <cmath>
-#include <numbers>
+
+#include "parkade/core/units.hpp"
 
 namespace parkade::sim {
 namespace {
-
-constexpr double kGravity = 9.81;
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 Eigen::Vector3d normal3(Random& random, double sigma) {
   // One draw per axis in a fixed order: evaluation order of arguments is unspecified.

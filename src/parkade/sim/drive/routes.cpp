@@ -11,6 +11,7 @@
 
 #include "parkade/core/random.hpp"
 #include "parkade/sim/drive/way.hpp"
+#include "parkade/sim/world/aisle_graph.hpp"
 
 namespace parkade::sim {
 namespace {
@@ -47,15 +48,6 @@ Way paperWay(const std::string& name) {
     way.trim_start = 8.0;
   }
   return way;
-}
-
-std::vector<int> neighboursOf(const AisleGraph& graph, int node) {
-  std::vector<int> result;
-  for (const AisleGraph::Edge& edge : graph.edges) {
-    if (edge.from == node) result.push_back(edge.to);
-    if (edge.to == node && !edge.one_way) result.push_back(edge.from);
-  }
-  return result;
 }
 
 // A random walk without turning back on the spot, which likes aisles that it has not seen.

@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "parkade/core/random.hpp"
+#include "parkade/core/units.hpp"
 #include "parkade/sim/drive/imu_model.hpp"
 #include "parkade/sim/drive/rig_presets.hpp"
 #include "parkade/sim/world/generate.hpp"
@@ -16,7 +16,6 @@
 namespace parkade::sim {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kWheelRate = 100.0;        // Hz
 constexpr double kDefaultFrameRate = 10.0;  // Hz, where the rig does not say
 

@@ -10,9 +10,9 @@
 namespace parkade::sim {
 namespace {
 
-constexpr double kStep = 0.01;     // s between control points
-constexpr double kSpacing = 0.02;  // m between the points at which limits are looked up
-constexpr double kSlowest = 0.05;  // m/s; no limit is lower, so that every path ends
+constexpr double kStep = 0.01;          // s between control points
+constexpr double kLimitSpacing = 0.02;  // m between the points at which limits are looked up
+constexpr double kSlowest = 0.05;       // m/s; no limit is lower, so that every path ends
 
 // A stretch of constant acceleration, or a rest (length 0).
 struct Piece {
@@ -36,7 +36,7 @@ double speedLimitAt(const Path& path, double s, const std::vector<SpeedLimit>& l
 // From rest at s0 to rest at s1.
 void appendRun(const Path& path, double s0, double s1, const std::vector<SpeedLimit>& limits,
                const SpeedOptions& options, std::vector<Piece>& pieces) {
-  const int count = std::max(2, static_cast<int>(std::ceil((s1 - s0) / kSpacing)));
+  const int count = std::max(2, static_cast<int>(std::ceil((s1 - s0) / kLimitSpacing)));
   const double ds = (s1 - s0) / count;
   std::vector<double> speed(count + 1);
   for (int i = 0; i <= count; ++i) speed[i] = speedLimitAt(path, s0 + i * ds, limits, options);

@@ -9,14 +9,13 @@
 #include <vector>
 
 #include "parkade/core/random.hpp"
+#include "parkade/core/units.hpp"
 
 namespace parkade::sim {
 namespace {
 
-constexpr double kGravity = 9.81;
 constexpr double kControlStep = 0.01;  // s between control points of the truth
 constexpr int kSubSteps = 5;           // of the suspension's integration within one
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 // Unevenness of the ground: plane waves of 0.4 to 6 m length in all directions, the long ones
 // higher.

@@ -12,6 +12,8 @@
 
 namespace parkade::sim {
 
+inline constexpr double kGravity = 9.81;  ///< m/s2
+
 /// Height of the ground that wheels roll on, with speed bumps, at a place of the garage frame, m.
 using SurfaceHeight = std::function<double(const Eigen::Vector2d&)>;
 

@@ -5,25 +5,19 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "parkade/core/random.hpp"
 #include "parkade/sim/render/parallel.hpp"
+#include "parkade/sim/render/tracer.hpp"
 
 namespace parkade::sim {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kFar = 1.0e4F;  // m
 constexpr int kSmoothingPasses = 2;
 
 float fraction(float x) {
   return x - std::floor(x);
 }
-float uniformOf(std::uint64_t bits) {
-  return static_cast<float>(bits >> 40U) * (1.0F / 16777216.0F);
-}
-
 }  // namespace
 
 float radicalInverse(std::uint32_t i) {

@@ -8,13 +8,10 @@
 
 #include "parkade/core/check.hpp"
 #include "parkade/sim/render/parallel.hpp"
+#include "parkade/sim/render/tracer.hpp"
 
 namespace parkade::sim {
-namespace {
-
-constexpr float kFar = 1.0e4F;  // m
-
-}  // namespace
+namespace {}  // namespace
 
 void Baker::layFloor(FloorGrid& grid, float cell) const {
   Eigen::Vector2f low = Eigen::Vector2f::Constant(std::numeric_limits<float>::max());

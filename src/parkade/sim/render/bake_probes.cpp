@@ -4,16 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "parkade/core/random.hpp"
 #include "parkade/sim/render/parallel.hpp"
+#include "parkade/sim/render/tracer.hpp"
 
 namespace parkade::sim {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kFar = 1.0e4F;          // m
 constexpr float kProbeSpacing = 1.25F;  // m
 
 }  // namespace

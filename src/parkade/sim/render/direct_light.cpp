@@ -5,16 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "parkade/core/random.hpp"
+#include "parkade/sim/render/tracer.hpp"
 
 namespace parkade::sim {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kReach = 16.0F;        // m: a lamp 2.6 m up brings 3 % of its floor light beyond
-constexpr float kCell = 4.0F;          // m
+constexpr float kLampCell = 4.0F;      // m
 constexpr float kUpwardShare = 0.12F;  // of the flux
 // The pool of light on the ceiling is narrower than the ceiling's cuts: it is lit from lower down.
 constexpr float kUpwardDrop = 0.6F;  // m
@@ -23,10 +22,6 @@ constexpr float kSkin = 0.01F;       // m: shadow rays start this far off the su
 
 int samplesAt(float distance) {
   return distance < 4.0F ? 4 : distance < 8.0F ? 2 : 1;
-}
-
-float uniformOf(std::uint64_t bits) {
-  return static_cast<float>(bits >> 40U) * (1.0F / 16777216.0F);
 }
 
 }  // namespace
@@ -44,8 +39,8 @@ DirectLight::DirectLight(const Scene& scene, const StaticTracer& tracer)
     high = high.cwiseMax(center);
   }
   grid_min_ = low.array() - kReach;
-  grid_nx_ = static_cast<int>((high.x() + kReach - grid_min_.x()) / kCell) + 1;
-  grid_ny_ = static_cast<int>((high.y() + kReach - grid_min_.y()) / kCell) + 1;
+  grid_nx_ = static_cast<int>((high.x() + kReach - grid_min_.x()) / kLampCell) + 1;
+  grid_ny_ = static_cast<int>((high.y() + kReach - grid_min_.y()) / kLampCell) + 1;
   lamps_of_cell_.resize(static_cast<std::size_t>(grid_nx_) * grid_ny_);
   for (std::uint32_t i = 0; i < scene.luminaires.size(); ++i) {
     const Luminaire& lamp = scene.luminaires[i];
@@ -55,7 +50,7 @@ DirectLight::DirectLight(const Scene& scene, const StaticTracer& tracer)
     const Eigen::Vector2f center = 0.5F * (lamp.end_a + lamp.end_b).head<2>();
     for (int y = 0; y < grid_ny_; ++y) {
       for (int x = 0; x < grid_nx_; ++x) {
-        const Eigen::Vector2f cell = grid_min_ + kCell * Eigen::Vector2f(x + 0.5F, y + 0.5F);
+        const Eigen::Vector2f cell = grid_min_ + kLampCell * Eigen::Vector2f(x + 0.5F, y + 0.5F);
         if ((cell - center).norm() < kReach) {
           lamps_of_cell_[static_cast<std::size_t>(y) * grid_nx_ + x].push_back(i);
         }
@@ -65,8 +60,8 @@ DirectLight::DirectLight(const Scene& scene, const StaticTracer& tracer)
 }
 
 const std::vector<std::uint32_t>* DirectLight::lampsNear(const Eigen::Vector3f& p) const {
-  const int x = static_cast<int>(std::floor((p.x() - grid_min_.x()) / kCell));
-  const int y = static_cast<int>(std::floor((p.y() - grid_min_.y()) / kCell));
+  const int x = static_cast<int>(std::floor((p.x() - grid_min_.x()) / kLampCell));
+  const int y = static_cast<int>(std::floor((p.y() - grid_min_.y()) / kLampCell));
   if (x < 0 || y < 0 || x >= grid_nx_ || y >= grid_ny_) {
     return nullptr;
   }
@@ -162,8 +157,8 @@ void DirectLight::addDaylight(DirectPacket& packet) const {
 }
 
 std::uint64_t DirectLight::cellOf(const Eigen::Vector3f& p) {
-  const auto x = static_cast<std::int32_t>(std::floor(p.x() / kCell));
-  const auto y = static_cast<std::int32_t>(std::floor(p.y() / kCell));
+  const auto x = static_cast<std::int32_t>(std::floor(p.x() / kLampCell));
+  const auto y = static_cast<std::int32_t>(std::floor(p.y() / kLampCell));
   return static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32U |
          static_cast<std::uint32_t>(x);
 }

@@ -12,7 +12,7 @@
 namespace parkade::sim {
 namespace {
 
-constexpr float kCell = 0.1F;       // m
+constexpr float kMapCell = 0.1F;    // m
 constexpr float kMargin = 2.0F;     // m around the lamps
 constexpr float kFarthest = 60.0F;  // m along a mirror ray
 constexpr float kLobeWidth = 2.6F;  // diameter at half height of the mirrored GGX lobe over alpha
@@ -38,9 +38,9 @@ LampMap::LampMap(const Scene& scene, double scale) {
   height_ = static_cast<float>(height / (2.0 * static_cast<double>(scene.luminaires.size())));
   min_ = low.array() - kMargin;
   Level base;
-  base.cell = kCell;
-  base.nx = static_cast<int>((high.x() + kMargin - min_.x()) / kCell) + 1;
-  base.ny = static_cast<int>((high.y() + kMargin - min_.y()) / kCell) + 1;
+  base.cell = kMapCell;
+  base.nx = static_cast<int>((high.x() + kMargin - min_.x()) / kMapCell) + 1;
+  base.ny = static_cast<int>((high.y() + kMargin - min_.y()) / kMapCell) + 1;
   base.texels.assign(static_cast<std::size_t>(base.nx) * base.ny, Eigen::Vector4f::Zero());
   levels_.push_back(std::move(base));
   for (const Luminaire& lamp : scene.luminaires) {
@@ -68,13 +68,13 @@ void LampMap::draw(const Luminaire& lamp, float flux) {
   Level& base = levels_.front();
   const Eigen::Vector2f a = lamp.end_a.head<2>();
   const Eigen::Vector2f b = lamp.end_b.head<2>();
-  const int steps = std::max(1, static_cast<int>((b - a).norm() / (0.25F * kCell)));
-  const float share = flux / std::numbers::pi_v<float> / (kCell * kCell) / steps;
+  const int steps = std::max(1, static_cast<int>((b - a).norm() / (0.25F * kMapCell)));
+  const float share = flux / std::numbers::pi_v<float> / (kMapCell * kMapCell) / steps;
   for (int i = 0; i < steps; ++i) {
     const Eigen::Vector2f p = a + (b - a) * ((i + 0.5F) / steps) - min_;
     // Bilinear splat: no steps between cells.
-    const float fx = p.x() / kCell - 0.5F;
-    const float fy = p.y() / kCell - 0.5F;
+    const float fx = p.x() / kMapCell - 0.5F;
+    const float fy = p.y() / kMapCell - 0.5F;
     const int x = static_cast<int>(fx);
     const int y = static_cast<int>(fy);
     for (int k = 0; k < 4; ++k) {
@@ -112,11 +112,11 @@ Eigen::Vector3f LampMap::glow(const Eigen::Vector3f& p, const Eigen::Vector3f& d
   const float t = rise / direction.z();
   // The lobe's print on the plane: its azimuth narrows by the cosine, its length grows by it.
   const float width = kLobeWidth * std::max(roughness * roughness, 0.004F) * t;
-  const float across = std::max(width * cosine, kCell);
+  const float across = std::max(width * cosine, kMapCell);
   const float along = std::max(width / std::max(cosine, 0.05F), across);
   const int taps = std::min(kMaxTaps, static_cast<int>(along / across + 0.5F));
   const float print = std::max(across, along / static_cast<float>(taps));
-  const float wanted = fastLog2(print / kCell);
+  const float wanted = fastLog2(print / kMapCell);
   const int last = static_cast<int>(levels_.size()) - 1;
   const int level = std::clamp(static_cast<int>(wanted), 0, last);
   const float blend =

@@ -15,7 +15,6 @@
 namespace parkade::sim {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr float kBeamWedge = 0.95F;  // rad: the lobe's half angle on the plan, with room for tilt
 
 /// A cone from an eye.
@@ -44,7 +43,7 @@ struct SightCone {
 
 /// Spheres around the cells of a half-metre grid that the mesh's triangles reach.
 std::vector<Eigen::Vector4f> partsOf(const RenderMesh& mesh, const Eigen::Vector3f& low) {
-  constexpr float kCell = 0.5F;
+  constexpr float kBallCell = 0.5F;
   std::set<std::array<int, 3>> cells;
   for (const RenderTriangle& t : mesh.triangles) {
     Eigen::Vector3f from = mesh.positions[t.v[0]];
@@ -53,8 +52,8 @@ std::vector<Eigen::Vector4f> partsOf(const RenderMesh& mesh, const Eigen::Vector
       from = from.cwiseMin(mesh.positions[v]);
       to = to.cwiseMax(mesh.positions[v]);
     }
-    const Eigen::Array3i first = ((from - low) / kCell).array().floor().cast<int>();
-    const Eigen::Array3i last = ((to - low) / kCell).array().floor().cast<int>();
+    const Eigen::Array3i first = ((from - low) / kBallCell).array().floor().cast<int>();
+    const Eigen::Array3i last = ((to - low) / kBallCell).array().floor().cast<int>();
     for (int x = first.x(); x <= last.x(); ++x) {
       for (int y = first.y(); y <= last.y(); ++y) {
         for (int z = first.z(); z <= last.z(); ++z) {
@@ -66,8 +65,8 @@ std::vector<Eigen::Vector4f> partsOf(const RenderMesh& mesh, const Eigen::Vector
   std::vector<Eigen::Vector4f> parts;
   for (const auto& [x, y, z] : cells) {
     const Eigen::Vector3f center =
-        low + kCell * (Eigen::Array3f(x, y, z).matrix() + Eigen::Vector3f::Constant(0.5F));
-    parts.emplace_back(center.x(), center.y(), center.z(), 0.87F * kCell);
+        low + kBallCell * (Eigen::Array3f(x, y, z).matrix() + Eigen::Vector3f::Constant(0.5F));
+    parts.emplace_back(center.x(), center.y(), center.z(), 0.87F * kBallCell);
   }
   return parts;
 }
@@ -269,7 +268,7 @@ std::shared_ptr<const Moment> MomentMaker::make(double t,
   }
   for (std::size_t i = 0; i < moment->lamp_brightness.size(); ++i) {
     const Luminaire& lamp = scene_.luminaires[i];
-    const double wave = 0.5 - 0.5 * std::cos(2.0 * kPi * lamp.flicker_hz * t);
+    const double wave = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * lamp.flicker_hz * t);
     moment->lamp_brightness[i] = 1.0F - lamp.flicker_depth * static_cast<float>(wave);
   }
   return moment;

@@ -10,13 +10,13 @@
 #include "parkade/sim/render/parallel.hpp"
 #include "parkade/sim/render/renderer.hpp"
 #include "parkade/sim/render/tile_tracer.hpp"
+#include "parkade/sim/render/tracer.hpp"
 
 namespace parkade::sim {
 namespace {
 
 constexpr unsigned kWithoutCeiling = kMaskSolid | kMaskFloor;
 constexpr float kAbove = 20.0F;  // m over the vehicle's ground: above every garage level's ceiling
-constexpr float kFar = 1.0e4F;
 constexpr float kProbeHeight =
     1.0F;  // m: where a place is tested for lying inside a pillar or wall
 

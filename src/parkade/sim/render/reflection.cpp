@@ -5,15 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "parkade/sim/render/parallel.hpp"
 #include "parkade/sim/render/tile_tracer.hpp"
+#include "parkade/sim/render/tracer.hpp"
 
 namespace parkade::sim {
 namespace {
 
-constexpr float kFar = 1.0e4F;
 constexpr float kCoatBlur = 0.2F;    // roughness: a lone ray per pixel must not sparkle
 constexpr float kSteepest = 0.3F;    // slope down to which a coat's image of lamps widens
 constexpr float kFloorNear = 5e-4F;  // m: closer than other rays start, or walls leak

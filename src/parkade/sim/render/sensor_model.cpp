@@ -16,7 +16,6 @@
 namespace parkade::sim {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kLevels = 4096;  // 12-bit converter
 constexpr double kTransmission = 0.9;
 /// Photons per square metre for 1 lux second of white light: 1 / 683 J at 555 nm is 4.1e15, and
@@ -38,7 +37,7 @@ const std::array<float, kLevels>& normalQuantiles() {
       double x = 0.0;
       for (int k = 0; k < 60; ++k) {  // Newton on the distribution function
         const double f = 0.5 * std::erfc(-x / std::numbers::sqrt2) - p;
-        const double density = std::exp(-0.5 * x * x) / std::sqrt(2.0 * kPi);
+        const double density = std::exp(-0.5 * x * x) / std::sqrt(2.0 * std::numbers::pi);
         x -= std::clamp(f / density, -0.5, 0.5);
       }
       z[static_cast<std::size_t>(i)] = x;
@@ -57,7 +56,8 @@ const std::array<float, kLevels>& normalQuantiles() {
 
 SensorModel::SensorModel(const SensorOptions& options) : options_(options) {
   // E_sensor = pi L T / (4 N^2), electrons = E t * photons * pixel area * filter * QE.
-  const double lux_per_nit = kPi * kTransmission / (4.0 * options.f_number * options.f_number);
+  const double lux_per_nit =
+      std::numbers::pi * kTransmission / (4.0 * options.f_number * options.f_number);
   const double area = options.pixel_um * options.pixel_um * 1e-12;
   electrons_per_nit_s_ =
       lux_per_nit * kPhotonsPerLuxSecond * area * kFilter[1] * options.quantum_efficiency;

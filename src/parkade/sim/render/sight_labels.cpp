@@ -7,6 +7,7 @@
 #include "parkade/sim/render/parallel.hpp"
 #include "parkade/sim/render/renderer.hpp"
 #include "parkade/sim/render/tile_tracer.hpp"
+#include "parkade/sim/render/tracer.hpp"
 
 namespace parkade::sim {
 
@@ -14,7 +15,6 @@ cv::Mat Renderer::renderSights(const cv::Mat& directions_cam, const SE3& T_world
                                const Moment& moment) const {
   PARKADE_CHECK(directions_cam.type() == CV_32FC3, "directions of type {}", directions_cam.type());
   constexpr std::uint32_t kOwnCar = 0xffffffffU;
-  constexpr float kFar = 1.0e4F;
   const Eigen::Matrix3f R_world_cam = T_world_cam.rotation().matrix().cast<float>();
   const Eigen::Vector3f eye = T_world_cam.translation().cast<float>();
   const int cols = directions_cam.cols;

@@ -32,9 +32,6 @@ set(RENDER_SOURCES
     render/tile_tracer.cpp
     render/tracer.cpp
     render/truth.cpp)
-# Fused multiply-add would make pictures differ between instruction sets.
-set_source_files_properties(${RENDER_SOURCES} PROPERTIES
-                            COMPILE_OPTIONS "-ffp-contract=off;-fno-math-errno;-fno-trapping-math")
 set(RENDER_TESTS
     render/garage_exactness_test.cpp
     render/geometry_exactness_test.cpp

@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "parkade/sim/render/tracer.hpp"
+
 namespace parkade::sim {
-namespace {
-
-constexpr float kFar = 1.0e4F;
-
-}  // namespace
+namespace {}  // namespace
 
 RTCScene TileTracer::movingIn(int tile, bool mirrored) const {
   if (setup_.moment->scene == nullptr) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "parkade/sim/render/embree.hpp"
@@ -13,6 +14,8 @@ namespace parkade::sim {
 
 inline constexpr int kPacket = 16;
 inline constexpr float kNear = 0.02F;  ///< m: rays start this far from their origin
+inline constexpr float kFar = 1.0e4F;  ///< m: beyond anything in a garage
+inline constexpr float kPi = std::numbers::pi_v<float>;
 inline constexpr std::uint32_t kNoTriangle = 0xffffffffU;
 
 /// Sixteen rays and what they hit. Lanes with valid 0 are not traced.

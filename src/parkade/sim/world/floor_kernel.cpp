@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "parkade/core/isa_clones.hpp"
+#include "parkade/sim/texel.hpp"
 #include "parkade/sim/world/floor_maps.hpp"
 #include "parkade/sim/world/paint_layer.hpp"
 
@@ -13,7 +14,6 @@ namespace parkade::sim {
 namespace {
 
 constexpr int kLanes = kFloorLanes;
-constexpr float kScale = 127.0F;  // of stored values
 
 // What texel.hpp has, as expressions without branches.
 inline std::int32_t roundedDown(float x) {
@@ -88,7 +88,7 @@ void lookAtGround(const GroundTable& table, const float* xs, const float* ys,
           static_cast<float>(value[0][k]) * (1.0F - fx) + static_cast<float>(value[1][k]) * fx;
       const float b =
           static_cast<float>(value[2][k]) * (1.0F - fx) + static_cast<float>(value[3][k]) * fx;
-      fine[k] = (a * (1.0F - at.fy[k]) + b * at.fy[k]) / kScale;
+      fine[k] = (a * (1.0F - at.fy[k]) + b * at.fy[k]) / kTexelScale;
     }
   }
 
@@ -134,7 +134,7 @@ void lookAtGround(const GroundTable& table, const float* xs, const float* ys,
           (1.0F - fx) * valueOf(texel[0][k], channel) + fx * valueOf(texel[1][k], channel);
       const float b =
           (1.0F - fx) * valueOf(texel[2][k], channel) + fx * valueOf(texel[3][k], channel);
-      return (1.0F / kScale) * ((1.0F - fy) * a + fy * b);
+      return (1.0F / kTexelScale) * ((1.0F - fy) * a + fy * b);
     };
     const float coarse = map(kCloudChannel);
     const float dirt = map(kDirtChannel);

@@ -12,8 +12,6 @@
 namespace parkade::sim {
 namespace {
 
-constexpr float kScale = 127.0F;
-
 float smooth(float t) {
   return t * t * (3.0F - 2.0F * t);
 }
@@ -29,7 +27,7 @@ GreyTexture::GreyTexture(const std::vector<float>& values, int width, int height
   texels_.reserve(values.size() + values.size() / 2);
   for (const float value : values) {
     texels_.push_back(
-        static_cast<std::int8_t>(std::lround(kScale * std::clamp(value, -1.0F, 1.0F))));
+        static_cast<std::int8_t>(std::lround(kTexelScale * std::clamp(value, -1.0F, 1.0F))));
   }
   while (levels_.back().width >= 4 && levels_.back().height >= 4) {
     const Level fine = levels_.back();
@@ -77,7 +75,7 @@ float GreyTexture::sample(float u, float v, float footprint) const {
   const float fy = y - static_cast<float>(y0);
   const float a = static_cast<float>(row_a[ax]) * (1.0F - fx) + static_cast<float>(row_a[bx]) * fx;
   const float b = static_cast<float>(row_b[ax]) * (1.0F - fx) + static_cast<float>(row_b[bx]) * fx;
-  return (a * (1.0F - fy) + b * fy) / kScale;
+  return (a * (1.0F - fy) + b * fy) / kTexelScale;
 }
 
 std::vector<float> fractalNoise(int size, int coarsest, double roughness, std::uint64_t seed) {

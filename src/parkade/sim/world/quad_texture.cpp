@@ -9,10 +9,6 @@
 #include "parkade/sim/texel.hpp"
 
 namespace parkade::sim {
-namespace {
-constexpr float kScale = 127.0F;
-}  // namespace
-
 QuadTexture::QuadTexture(const std::array<std::vector<float>, 4>& channels, int width, int height) {
   const std::size_t size = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   for (const std::vector<float>& channel : channels) {
@@ -29,7 +25,7 @@ QuadTexture::QuadTexture(const std::array<std::vector<float>, 4>& channels, int 
   for (std::size_t i = 0; i < size; ++i) {
     pack([&](unsigned c) {
       return static_cast<std::int8_t>(
-          std::lround(kScale * std::clamp(channels[c][i], -1.0F, 1.0F)));
+          std::lround(kTexelScale * std::clamp(channels[c][i], -1.0F, 1.0F)));
     });
   }
   offsets_.push_back(0);
@@ -79,7 +75,7 @@ Eigen::Vector4f QuadTexture::sample(float u, float v, float footprint) const {
   const float fy = y - static_cast<float>(y0);
   const Eigen::Vector4f a = (1.0F - fx) * at(ax, y0) + fx * at(bx, y0);
   const Eigen::Vector4f b = (1.0F - fx) * at(ax, y0 + 1) + fx * at(bx, y0 + 1);
-  return (1.0F / kScale) * ((1.0F - fy) * a + fy * b);
+  return (1.0F / kTexelScale) * ((1.0F - fy) * a + fy * b);
 }
 
 }  // namespace parkade::sim

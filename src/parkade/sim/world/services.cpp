@@ -14,14 +14,14 @@ constexpr float kTubeGlow = 40.0F;   // luminance of a tube per lux on the floor
 constexpr float kFlux = 3200.0F;     // lm; the light is scaled to the asked illuminance
 
 /// An aisle of the graph as a frame along it.
-struct Run {
+struct ServiceRun {
   Frame2 frame;
   double length = 0.0;
   double width = 0.0;
 };
 
-std::vector<Run> runsOf(const Garage& garage) {
-  std::vector<Run> runs;
+std::vector<ServiceRun> runsOf(const Garage& garage) {
+  std::vector<ServiceRun> runs;
   for (const AisleGraph::Edge& edge : garage.aisles.edges) {
     const Eigen::Vector2d a = garage.aisles.nodes[static_cast<std::size_t>(edge.from)];
     const Eigen::Vector2d d = garage.aisles.nodes[static_cast<std::size_t>(edge.to)] - a;
@@ -31,22 +31,22 @@ std::vector<Run> runsOf(const Garage& garage) {
 }
 
 /// A box along a run, centred at (s, y, z).
-void boxAlong(const Run& run, double s, double y, double z, double half_length, double half_width,
-              double half_height, std::uint16_t material, MeshBuilder& mesh) {
+void boxAlong(const ServiceRun& run, double s, double y, double z, double half_length,
+              double half_width, double half_height, std::uint16_t material, MeshBuilder& mesh) {
   mesh.box(point3(run.frame * Eigen::Vector2d(s, y), z),
            {static_cast<float>(half_length), static_cast<float>(half_width),
             static_cast<float>(half_height)},
            material, static_cast<float>(run.frame.heading));
 }
 
-void pipeAlong(const Run& run, double y, double z, double radius, std::uint16_t material,
+void pipeAlong(const ServiceRun& run, double y, double z, double radius, std::uint16_t material,
                MeshBuilder& mesh) {
   mesh.cone(point3(run.frame * Eigen::Vector2d(-0.5, y), z),
             point3(run.frame * Eigen::Vector2d(run.length + 0.5, y), z), static_cast<float>(radius),
             static_cast<float>(radius), 10, material, false);
 }
 
-void addDuct(const Run& run, double ceiling, std::uint16_t metal, std::uint16_t dark,
+void addDuct(const ServiceRun& run, double ceiling, std::uint16_t metal, std::uint16_t dark,
              MeshBuilder& mesh) {
   const double y = 0.5 * run.width + 1.2;
   const double z = ceiling - 0.24 - 0.19;
@@ -57,7 +57,7 @@ void addDuct(const Run& run, double ceiling, std::uint16_t metal, std::uint16_t 
   }
 }
 
-void addSprinklers(const Run& run, double ceiling, std::uint16_t red, MeshBuilder& mesh) {
+void addSprinklers(const ServiceRun& run, double ceiling, std::uint16_t red, MeshBuilder& mesh) {
   const double y = -1.35;
   const double z = ceiling - 0.30;
   pipeAlong(run, y, z, 0.045, red, mesh);
@@ -70,7 +70,8 @@ void addSprinklers(const Run& run, double ceiling, std::uint16_t red, MeshBuilde
   }
 }
 
-void addTray(const Run& run, double ceiling, double y0, std::uint16_t metal, MeshBuilder& mesh) {
+void addTray(const ServiceRun& run, double ceiling, double y0, std::uint16_t metal,
+             MeshBuilder& mesh) {
   boxAlong(run, 0.5 * run.length, y0, ceiling - 0.29, 0.5 * run.length, 0.11, 0.025, metal, mesh);
   for (double s = 1.0; s < run.length; s += 2.5) {
     for (const double y : {-0.1, 0.1}) {
@@ -116,7 +117,7 @@ void addServices(const Garage& garage, const GarageStyle& style, Random random, 
       palette.add("pipe_white", SemanticClass::kCeiling, 1.1F * style.ceiling_colour, 0.6F);
   const std::uint16_t bottle =
       palette.add("extinguisher", SemanticClass::kPillar, {0.50F, 0.02F, 0.02F}, 0.35F);
-  for (const Run& run : runsOf(garage)) {
+  for (const ServiceRun& run : runsOf(garage)) {
     for (const double y : {-0.25, 0.0, 0.25}) {
       if (style.lamps_in_line != (y == 0.0)) continue;
       addTray(run, garage.ceiling_height, y * run.width, style.tray_dark ? dark : white, mesh);
@@ -158,7 +159,7 @@ void addLamps(const Garage& garage, const GarageStyle& style, Random random, Pal
     const bool flickers = random.chance(style.lamp_flicker_share);
     addTube(at, garage.ceiling_height, lit, flickers, style, materials, random, palette, mesh);
   };
-  for (const Run& run : runsOf(garage)) {
+  for (const ServiceRun& run : runsOf(garage)) {
     const int count = std::max(1, static_cast<int>(std::lround(run.length / style.lamp_spacing)));
     // Over both lanes, staggered: even light without glare on every tube.
     for (int i = 0; i < 2 * count; ++i) {

@@ -66,9 +66,9 @@ constexpr std::array<Glyph, 45> kGlyphs = {{
 
 constexpr double kCellsWide = 4.0;
 constexpr double kCellsHigh = 6.0;
-constexpr double kAspect = 0.62;   // of a glyph's width to its height
-constexpr double kSpacing = 0.24;  // between glyphs, share of the height
-constexpr double kBlank = 0.5;     // of a blank's width
+constexpr double kAspect = 0.62;        // of a glyph's width to its height
+constexpr double kGlyphSpacing = 0.24;  // between glyphs, share of the height
+constexpr double kBlank = 0.5;          // of a blank's width
 
 bool isNarrow(char letter) {
   return letter == 'I' || letter == '.' || letter == ':' || letter == '|';
@@ -163,7 +163,7 @@ double textWidth(std::string_view text, double height, double weight) {
   for (const char letter : text) {
     width += std::max(glyphWidth(letter), isNarrow(letter) ? weight : 0.0) * height;
   }
-  return width + kSpacing * height * static_cast<double>(text.empty() ? 0 : text.size() - 1);
+  return width + kGlyphSpacing * height * static_cast<double>(text.empty() ? 0 : text.size() - 1);
 }
 
 std::vector<Polygon> textPolygons(std::string_view text, double height, double weight) {
@@ -174,7 +174,7 @@ std::vector<Polygon> textPolygons(std::string_view text, double height, double w
     const double advance = std::max(glyphWidth(letter), isNarrow(letter) ? weight : 0.0) * height;
     const double offset = isNarrow(letter) ? 0.5 * advance : 0.0;
     addGlyph(strokesOf(letter), x + offset, height, isNarrow(letter) ? 0.0 : advance, stroke, out);
-    x += advance + kSpacing * height;
+    x += advance + kGlyphSpacing * height;
   }
   return out;
 }
