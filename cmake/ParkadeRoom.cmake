@@ -11,6 +11,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
   # False positives on std::string operator+ (GCC bug 105651).
   target_compile_options(parkade_flags INTERFACE -Wno-restrict)
 endif()
+if(PARKADE_UNITY)
+  # Meant for headers; here sources are included.
+  target_compile_options(parkade_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endif()
 if(PARKADE_WARNINGS_AS_ERRORS)
   target_compile_options(parkade_flags INTERFACE -Werror)
 endif()
@@ -31,6 +35,12 @@ if(CMAKE_BUILD_TYPE STREQUAL "Debug")
   add_compile_definitions(EIGEN_INITIALIZE_MATRICES_BY_NAN)
 endif()
 
+# With PARKADE_UNITY, sources of a target are compiled together: names in their anonymous namespaces
+# must differ.
+function(parkade_unity TARGET)
+  set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ${PARKADE_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+endfunction()
+
 # parkade_room(NAME SOURCES a.cpp ... DEPS targets ... [PRIVATE_DEPS targets ...]
 #              [TESTS a_test.cpp ...] [TEST_DEPS targets ...])
 # DEPS name rooms (geometry) or outside targets (Eigen3::Eigen).
@@ -40,6 +50,7 @@ function(parkade_room NAME)
   if(ROOM_SOURCES)
     add_library(${TARGET} STATIC ${ROOM_SOURCES})
     set(SCOPE PUBLIC)
+    parkade_unity(${TARGET})
     target_link_libraries(${TARGET} PRIVATE $<BUILD_INTERFACE:parkade_flags>)
     set_target_properties(${TARGET} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   else()
