@@ -18,6 +18,7 @@ Result<OpenedSource> openFolder(const SourceRequest& request) {
   SequenceReaderOptions options;
   options.cameras = request.cameras;
   options.gray = request.gray;
+  options.gray_beside = request.gray_beside;
   options.tolerate_stamps = request.tolerate_stamps;
   options.start_s = request.start_s;
   options.duration_s = request.duration_s;

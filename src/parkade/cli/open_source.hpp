@@ -19,6 +19,7 @@ struct SourceRequest {
   double duration_s = 0.0;  ///< 0: to the end
   bool tolerate_stamps = false;
   bool gray = true;
+  bool gray_beside = false;  ///< gray as well where colour is read, as key points want it
   int decode_threads = 1;
 };
 

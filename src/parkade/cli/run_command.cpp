@@ -82,7 +82,8 @@ Status runSequence(const RunArguments& arguments) {
   // The paper's semantic method has one camera: the front one, where the user names no other.
   if (method == RunMethod::kSemantic && request.cameras.empty()) request.cameras = "cam0";
   request.decode_threads = arguments.threads > 1 ? 1 : 0;
-  request.gray = arguments.method == "vis";  // networks want colour
+  request.gray = method == RunMethod::kVis;  // networks want colour
+  request.gray_beside = method == RunMethod::kFused;
   Result<OpenedSource> opened = openSource(request);
   if (!opened) return opened.error();
   if (Status status = prepareRunFolder(arguments.out, arguments.force); !status) return status;

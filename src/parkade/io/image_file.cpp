@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "parkade/io/file.hpp"
 
@@ -65,33 +66,72 @@ Error at(const std::string& path, const std::string& message) {
   return {fmt::format("{}: {}", path, message)};
 }
 
+bool isPng(std::string_view bytes) {
+  return bytes.substr(0, kPngSignature.size()) == kPngSignature;
+}
+
+// The bytes of a whole picture.
+Result<std::string> readImageBytes(const std::string& path) {
+  Result<std::string> bytes = readFile(path);
+  if (!bytes) return bytes;
+  if (const Status status = checkImageBytes(*bytes); !status) {
+    return at(path, status.error().message);
+  }
+  return bytes;
+}
+
+cv::Mat grayOf(const cv::Mat& image) {
+  if (image.channels() == 1) return image;
+  cv::Mat gray;
+  cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
+  return gray;
+}
+
+// A PNG in colour is turned gray here: decoding it twice for both would take as long again.
+Result<cv::Mat> decode(const std::string& bytes, const std::string& path, bool gray) {
+  const bool png = isPng(bytes);
+  const int channels = gray ? (png ? cv::IMREAD_ANYCOLOR : cv::IMREAD_GRAYSCALE) : cv::IMREAD_COLOR;
+  try {
+    // A header over the bytes; imdecode only reads them.
+    const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8UC1,
+                      const_cast<char*>(bytes.data()));  // NOLINT
+    const cv::Mat image = cv::imdecode(raw, channels | cv::IMREAD_IGNORE_ORIENTATION);
+    if (image.empty()) return at(path, "the picture cannot be decoded: the file is corrupt");
+    return gray ? grayOf(image) : image;
+  } catch (const cv::Exception& error) {
+    return at(path, fmt::format("the picture cannot be decoded: {}", error.err));
+  }
+}
+
 }  // namespace
 
 Status checkImageBytes(std::string_view bytes) {
   if (bytes.empty()) return Error{"the file is empty"};
-  if (bytes.substr(0, kPngSignature.size()) == kPngSignature) return checkPng(bytes);
+  if (isPng(bytes)) return checkPng(bytes);
   if (bytes.substr(0, kJpegSignature.size()) == kJpegSignature) return checkJpeg(bytes);
   return Error{"neither a PNG nor a JPEG file"};
 }
 
 Result<cv::Mat> readImage(const std::string& path, bool gray) {
-  const Result<std::string> bytes = readFile(path);
+  const Result<std::string> bytes = readImageBytes(path);
   if (!bytes) return bytes.error();
-  if (const Status status = checkImageBytes(*bytes); !status) {
-    return at(path, status.error().message);
+  return decode(*bytes, path, gray);
+}
+
+Result<GrayAndColour> readGrayAndColour(const std::string& path) {
+  const Result<std::string> bytes = readImageBytes(path);
+  if (!bytes) return bytes.error();
+  Result<cv::Mat> colour = decode(*bytes, path, false);
+  if (!colour) return colour.error();
+  GrayAndColour both{std::move(*colour), {}};
+  if (isPng(*bytes)) {
+    both.gray = grayOf(both.colour);
+    return both;
   }
-  const int flags =
-      (gray ? cv::IMREAD_GRAYSCALE : cv::IMREAD_COLOR) | cv::IMREAD_IGNORE_ORIENTATION;
-  try {
-    // A header over the bytes; imdecode only reads them.
-    const cv::Mat raw(1, static_cast<int>(bytes->size()), CV_8UC1,
-                      const_cast<char*>(bytes->data()));  // NOLINT
-    cv::Mat image = cv::imdecode(raw, flags);
-    if (image.empty()) return at(path, "the picture cannot be decoded: the file is corrupt");
-    return image;
-  } catch (const cv::Exception& error) {
-    return at(path, fmt::format("the picture cannot be decoded: {}", error.err));
-  }
+  Result<cv::Mat> gray = decode(*bytes, path, true);
+  if (!gray) return gray.error();
+  both.gray = std::move(*gray);
+  return both;
 }
 
 Result<std::string> encodeImage(const cv::Mat& image, const ImageEncoding& encoding) {

@@ -154,6 +154,7 @@ void SequenceReader::cut(const SequenceReaderOptions& options) {
 }
 
 void SequenceReader::startDecoding(const SequenceReaderOptions& options) {
+  gray_beside_ = !options.gray && options.gray_beside;
   for (const JoinedFrame& frame : frames_) {
     for (std::size_t camera = 0; camera < frame.images.size(); ++camera) {
       const int image = frame.images[camera];
@@ -165,10 +166,14 @@ void SequenceReader::startDecoding(const SequenceReaderOptions& options) {
   image_paths_.clear();
   const std::size_t ahead =
       static_cast<std::size_t>(options.decode_ahead) * std::max<std::size_t>(1, counts_.size());
-  images_ = std::make_unique<OrderedPrefetch<Result<cv::Mat>>>(
-      jobs_.size(),
-      [this, gray = options.gray](std::size_t i) { return readImage(jobs_[i].path, gray); },
-      options.decode_threads, ahead);
+  const auto read = [this, gray = options.gray](std::size_t i) -> Result<GrayAndColour> {
+    if (gray_beside_) return readGrayAndColour(jobs_[i].path);
+    Result<cv::Mat> image = readImage(jobs_[i].path, gray);
+    if (!image) return image.error();
+    return GrayAndColour{std::move(*image), {}};
+  };
+  images_ = std::make_unique<OrderedPrefetch<Result<GrayAndColour>>>(jobs_.size(), read,
+                                                                     options.decode_threads, ahead);
 }
 
 // Fills a frame set with the next instant; false where none of its images could be read.
@@ -176,31 +181,34 @@ Result<bool> SequenceReader::takeFrame(FrameSet& frame_set) {
   const JoinedFrame& frame = frames_[next_frame_++];
   frame_set.t_ns = frame.t_ns;
   frame_set.images.resize(frame.images.size());
+  if (gray_beside_) frame_set.gray.resize(frame.images.size());
   frame_set.image_t_ns.assign(frame.images.size(), 0);
   bool any = false;
   for (std::size_t camera = 0; camera < frame.images.size(); ++camera) {
     if (frame.images[camera] < 0) continue;
     const std::size_t job = images_->taken();
-    Result<cv::Mat> image = images_->take();
+    Result<GrayAndColour> pictures = images_->take();
     CameraReadCount& count = counts_[camera];
-    if (!image) {
+    if (!pictures) {
       if (count.skipped++ == 0) {
-        logWarning("{}; skipped, and so are others of {} like it", image.error().message,
+        logWarning("{}; skipped, and so are others of {} like it", pictures.error().message,
                    count.name);
       }
       continue;
     }
+    cv::Mat& image = pictures->colour;
     const Camera& calibration = rig_.cameras[camera].camera;
-    if (image->cols != calibration.width() || image->rows != calibration.height()) {
+    if (image.cols != calibration.width() || image.rows != calibration.height()) {
       return Error{fmt::format(
           "{}: the image is {} x {}, the calibration of {} is for {} x {}: use the calibration of "
           "this camera and resolution",
-          jobs_[job].path, image->cols, image->rows, count.name, calibration.width(),
+          jobs_[job].path, image.cols, image.rows, count.name, calibration.width(),
           calibration.height())};
     }
     const auto place = static_cast<std::size_t>(frame.images[camera]);
     frame_set.image_t_ns[camera] = image_t_ns_[camera][place];
-    frame_set.images[camera] = std::move(*image);
+    frame_set.images[camera] = std::move(image);
+    if (gray_beside_) frame_set.gray[camera] = std::move(pictures->gray);
     ++count.delivered;
     any = true;
   }

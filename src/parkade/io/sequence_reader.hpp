@@ -9,6 +9,7 @@
 #include "parkade/camera/rig.hpp"
 #include "parkade/core/options.hpp"
 #include "parkade/io/frame_join.hpp"
+#include "parkade/io/image_file.hpp"
 #include "parkade/io/ordered_prefetch.hpp"
 #include "parkade/types/sensor_source.hpp"
 
@@ -17,6 +18,7 @@ namespace parkade {
 struct SequenceReaderOptions {
   std::string cameras;
   bool gray = true;
+  bool gray_beside = false;
   double join_tolerance_ms = 5.0;
   bool tolerate_stamps = false;
   bool require_imu = true;
@@ -28,6 +30,7 @@ struct SequenceReaderOptions {
   void visit(OptionVisitor& v) {
     v.field("cameras", cameras, "Cameras to read, as cam0,cam1; empty: all of the rig.");
     v.field("gray", gray, "Decode images as gray (true) or as BGR colour (false).");
+    v.field("gray_beside", gray_beside, "Decode colour images as gray as well.");
     v.field("join_tolerance_ms", join_tolerance_ms, "ms",
             "Images of different cameras this close are one instant; at most half a period.", 0.0,
             1000.0);
@@ -95,10 +98,11 @@ class SequenceReader : public SensorSource {
   std::size_t next_wheel_ = 0;
   std::size_t next_frame_ = 0;
   int next_index_ = 0;
+  bool gray_beside_ = false;
   bool ended_ = false;
   std::vector<ImageJob> jobs_;  // in the order of frames, then cameras
   // Last: its threads use what is above.
-  std::unique_ptr<OrderedPrefetch<Result<cv::Mat>>> images_;
+  std::unique_ptr<OrderedPrefetch<Result<GrayAndColour>>> images_;  // of colour or gray, or both
 };
 
 }  // namespace parkade

@@ -121,6 +121,29 @@ TEST_F(SequenceReaderTest, SubsetOfCamerasAndCut) {
   EXPECT_THAT(openError(options), AllOf(HasSubstr("cam7"), HasSubstr("cam0")));
 }
 
+TEST_F(SequenceReaderTest, GrayBesideColourOnRequest) {
+  SequenceReaderOptions options;
+  const auto framesWith = [&] {
+    const auto reader = SequenceReader::open(seq(), options);
+    return test::framesOf(test::readAll(**reader));
+  };
+  const std::vector<FrameSet> gray = framesWith();
+  options.gray = false;
+  EXPECT_TRUE(framesWith()[0].gray.empty());
+  options.gray_beside = true;
+  const std::vector<FrameSet> both = framesWith();
+  ASSERT_EQ(both.size(), gray.size());
+  for (std::size_t i = 0; i < both.size(); ++i) {
+    ASSERT_EQ(both[i].gray.size(), gray[i].images.size());
+    for (std::size_t c = 0; c < gray[i].images.size(); ++c) {
+      ASSERT_EQ(both[i].gray[c].empty(), gray[i].images[c].empty());
+      if (gray[i].images[c].empty()) continue;
+      EXPECT_EQ(both[i].images[c].type(), CV_8UC3);
+      EXPECT_EQ(cv::norm(both[i].gray[c], gray[i].images[c], cv::NORM_INF), 0.0);
+    }
+  }
+}
+
 TEST_F(SequenceReaderTest, BadImagesAreSkippedAndCountedAndTheRunGoesOn) {
   const std::string whole = test::bytesOf(seq(image("cam0", 1)));
   folder_.write("seq/" + image("cam0", 1), whole.substr(0, whole.size() / 2));

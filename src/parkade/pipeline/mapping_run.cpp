@@ -171,6 +171,7 @@ void MappingRun::Impl::process(Packet packet) {
   busy_.add(begin, end);
   last_t_ns_ = packet.frames.t_ns;
   last_imu_ = packet.imu;
+  packet.frames.gray.clear();
   if (mapper == nullptr) packet.frames.images.clear();  // else the estimation labels them
   running_ = std::make_unique<Estimation>();
   running_->packet = std::move(packet);

@@ -97,14 +97,15 @@ void Tracker::Impl::forEach(int count, const std::function<void(int)>& body) con
 }
 
 TrackSet Tracker::Impl::track(const FrameSet& frames, const MotionPrior& prior) {
-  PARKADE_CHECK(frames.images.size() == cameras.size(), "{} images for {} cameras",
-                frames.images.size(), cameras.size());
+  const std::vector<cv::Mat>& pictures = frames.gray.empty() ? frames.images : frames.gray;
+  PARKADE_CHECK(pictures.size() == cameras.size(), "{} images for {} cameras", pictures.size(),
+                cameras.size());
   report = {};
   first_new_id_ = next_id_;
   const int count = static_cast<int>(cameras.size());
   // 1. Every camera for itself.
   forEach(count, [&](int c) {
-    camera(c).track(frames.images[static_cast<std::size_t>(c)], frames.t_ns, prior,
+    camera(c).track(pictures[static_cast<std::size_t>(c)], frames.t_ns, prior,
                     hash64(frame_, static_cast<std::uint64_t>(c)));
   });
   // 2. Between cameras: old features first, so that they fill cells that need no new corner then.

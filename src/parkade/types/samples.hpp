@@ -34,6 +34,7 @@ struct WheelSample {
 struct FrameSet {
   TimeNs t_ns = 0;                 ///< the instant: mean stamp of the images joined here
   std::vector<cv::Mat> images;     ///< CV_8UC1 or CV_8UC3 (BGR)
+  std::vector<cv::Mat> gray;       ///< CV_8UC1, beside colour where the source read it; or none
   std::vector<TimeNs> image_t_ns;  ///< each image's own stamp on the IMU's clock (0: empty)
   int index = 0;                   ///< counts frame sets from 0
 };
