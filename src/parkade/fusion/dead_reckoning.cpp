@@ -9,8 +9,6 @@
 #include "parkade/geometry/se2.hpp"
 
 namespace parkade {
-namespace {}  // namespace
-
 DeadReckoning::DeadReckoning(const SE3& T_vehicle_imu, const DeadReckoningOptions& options)
     : T_vehicle_imu_(T_vehicle_imu), options_(options) {}
 

@@ -80,13 +80,6 @@ Result<std::string> readImageBytes(const std::string& path) {
   return bytes;
 }
 
-cv::Mat grayOf(const cv::Mat& image) {
-  if (image.channels() == 1) return image;
-  cv::Mat gray;
-  cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
-  return gray;
-}
-
 // A PNG in colour is turned gray here: decoding it twice for both would take as long again.
 Result<cv::Mat> decode(const std::string& bytes, const std::string& path, bool gray) {
   const bool png = isPng(bytes);
@@ -105,6 +98,13 @@ Result<cv::Mat> decode(const std::string& bytes, const std::string& path, bool g
 
 }  // namespace
 
+cv::Mat grayOf(const cv::Mat& image) {
+  if (image.channels() == 1) return image;
+  cv::Mat gray;
+  cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
+  return gray;
+}
+
 Status checkImageBytes(std::string_view bytes) {
   if (bytes.empty()) return Error{"the file is empty"};
   if (isPng(bytes)) return checkPng(bytes);
@@ -118,20 +118,14 @@ Result<cv::Mat> readImage(const std::string& path, bool gray) {
   return decode(*bytes, path, gray);
 }
 
-Result<GrayAndColour> readGrayAndColour(const std::string& path) {
+Result<ImageAndGray> readImageAndGray(const std::string& path) {
   const Result<std::string> bytes = readImageBytes(path);
   if (!bytes) return bytes.error();
-  Result<cv::Mat> colour = decode(*bytes, path, false);
-  if (!colour) return colour.error();
-  GrayAndColour both{std::move(*colour), {}};
-  if (isPng(*bytes)) {
-    both.gray = grayOf(both.colour);
-    return both;
-  }
-  Result<cv::Mat> gray = decode(*bytes, path, true);
+  Result<cv::Mat> image = decode(*bytes, path, false);
+  if (!image) return image.error();
+  Result<cv::Mat> gray = isPng(*bytes) ? grayOf(*image) : decode(*bytes, path, true);
   if (!gray) return gray.error();
-  both.gray = std::move(*gray);
-  return both;
+  return ImageAndGray{std::move(*image), std::move(*gray)};
 }
 
 Result<std::string> encodeImage(const cv::Mat& image, const ImageEncoding& encoding) {

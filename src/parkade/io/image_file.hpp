@@ -28,13 +28,18 @@ Status checkImageBytes(std::string_view bytes);
 /// sensor's rows and columns.
 Result<cv::Mat> readImage(const std::string& path, bool gray);
 
-/// A picture in BGR and in gray, each as readImage() gives it. A JPEG holds its gray as it is, and
-/// colour turned gray again differs from that by rounding.
-struct GrayAndColour {
-  cv::Mat colour;
+/// CV_8UC1 of a CV_8UC1 or CV_8UC3 (BGR) picture; shares memory with one that is gray.
+cv::Mat grayOf(const cv::Mat& image);
+
+/// A picture, and the same in gray where it is wanted beside colour.
+struct ImageAndGray {
+  cv::Mat image;
   cv::Mat gray;
 };
-Result<GrayAndColour> readGrayAndColour(const std::string& path);
+
+/// A picture in BGR and in gray, each as readImage() gives it. A JPEG holds its gray as it is, and
+/// colour turned gray again differs from that by rounding.
+Result<ImageAndGray> readImageAndGray(const std::string& path);
 
 /// The file's bytes; the same picture and encoding give the same bytes. image: CV_8UC1 or CV_8UC3.
 Result<std::string> encodeImage(const cv::Mat& image, const ImageEncoding& encoding);

@@ -49,15 +49,15 @@ TEST(ImageFile, GrayBesideColourIsTheGrayReadAlone) {
   for (const bool png : {false, true}) {
     for (const int type : {CV_8UC1, CV_8UC3}) {
       ASSERT_TRUE(writeImage(folder.path("a"), noise(type), {png, 92, 3}).ok());
-      const auto both = readGrayAndColour(folder.path("a"));
+      const auto both = readImageAndGray(folder.path("a"));
       ASSERT_TRUE(both.ok()) << both.error().message;
       const auto gray = readImage(folder.path("a"), true);
       const auto colour = readImage(folder.path("a"), false);
       EXPECT_EQ(cv::norm(both->gray, *gray, cv::NORM_INF), 0.0) << png << " " << type;
-      EXPECT_EQ(cv::norm(both->colour, *colour, cv::NORM_INF), 0.0) << png << " " << type;
+      EXPECT_EQ(cv::norm(both->image, *colour, cv::NORM_INF), 0.0) << png << " " << type;
     }
   }
-  EXPECT_THAT(readGrayAndColour(folder.write("b", "GIF89a")).error().message, HasSubstr("neither"));
+  EXPECT_THAT(readImageAndGray(folder.write("b", "GIF89a")).error().message, HasSubstr("neither"));
 }
 
 TEST(ImageFile, FindsEveryCutOffFile) {

@@ -154,7 +154,6 @@ void SequenceReader::cut(const SequenceReaderOptions& options) {
 }
 
 void SequenceReader::startDecoding(const SequenceReaderOptions& options) {
-  gray_beside_ = !options.gray && options.gray_beside;
   for (const JoinedFrame& frame : frames_) {
     for (std::size_t camera = 0; camera < frame.images.size(); ++camera) {
       const int image = frame.images[camera];
@@ -166,14 +165,15 @@ void SequenceReader::startDecoding(const SequenceReaderOptions& options) {
   image_paths_.clear();
   const std::size_t ahead =
       static_cast<std::size_t>(options.decode_ahead) * std::max<std::size_t>(1, counts_.size());
-  const auto read = [this, gray = options.gray](std::size_t i) -> Result<GrayAndColour> {
-    if (gray_beside_) return readGrayAndColour(jobs_[i].path);
+  const auto read = [this, gray = options.gray,
+                     beside = options.gray_beside](std::size_t i) -> Result<ImageAndGray> {
+    if (!gray && beside) return readImageAndGray(jobs_[i].path);
     Result<cv::Mat> image = readImage(jobs_[i].path, gray);
     if (!image) return image.error();
-    return GrayAndColour{std::move(*image), {}};
+    return ImageAndGray{std::move(*image), {}};
   };
-  images_ = std::make_unique<OrderedPrefetch<Result<GrayAndColour>>>(jobs_.size(), read,
-                                                                     options.decode_threads, ahead);
+  images_ = std::make_unique<OrderedPrefetch<Result<ImageAndGray>>>(jobs_.size(), read,
+                                                                    options.decode_threads, ahead);
 }
 
 // Fills a frame set with the next instant; false where none of its images could be read.
@@ -181,13 +181,12 @@ Result<bool> SequenceReader::takeFrame(FrameSet& frame_set) {
   const JoinedFrame& frame = frames_[next_frame_++];
   frame_set.t_ns = frame.t_ns;
   frame_set.images.resize(frame.images.size());
-  if (gray_beside_) frame_set.gray.resize(frame.images.size());
   frame_set.image_t_ns.assign(frame.images.size(), 0);
   bool any = false;
   for (std::size_t camera = 0; camera < frame.images.size(); ++camera) {
     if (frame.images[camera] < 0) continue;
     const std::size_t job = images_->taken();
-    Result<GrayAndColour> pictures = images_->take();
+    Result<ImageAndGray> pictures = images_->take();
     CameraReadCount& count = counts_[camera];
     if (!pictures) {
       if (count.skipped++ == 0) {
@@ -196,7 +195,7 @@ Result<bool> SequenceReader::takeFrame(FrameSet& frame_set) {
       }
       continue;
     }
-    cv::Mat& image = pictures->colour;
+    cv::Mat& image = pictures->image;
     const Camera& calibration = rig_.cameras[camera].camera;
     if (image.cols != calibration.width() || image.rows != calibration.height()) {
       return Error{fmt::format(
@@ -208,7 +207,10 @@ Result<bool> SequenceReader::takeFrame(FrameSet& frame_set) {
     const auto place = static_cast<std::size_t>(frame.images[camera]);
     frame_set.image_t_ns[camera] = image_t_ns_[camera][place];
     frame_set.images[camera] = std::move(image);
-    if (gray_beside_) frame_set.gray[camera] = std::move(pictures->gray);
+    if (!pictures->gray.empty()) {
+      frame_set.gray.resize(frame.images.size());
+      frame_set.gray[camera] = std::move(pictures->gray);
+    }
     ++count.delivered;
     any = true;
   }

@@ -98,11 +98,10 @@ class SequenceReader : public SensorSource {
   std::size_t next_wheel_ = 0;
   std::size_t next_frame_ = 0;
   int next_index_ = 0;
-  bool gray_beside_ = false;
   bool ended_ = false;
   std::vector<ImageJob> jobs_;  // in the order of frames, then cameras
   // Last: its threads use what is above.
-  std::unique_ptr<OrderedPrefetch<Result<GrayAndColour>>> images_;  // of colour or gray, or both
+  std::unique_ptr<OrderedPrefetch<Result<ImageAndGray>>> images_;
 };
 
 }  // namespace parkade

@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "parkade/io/file.hpp"
@@ -273,13 +272,10 @@ Status SequenceWriter::writeImageRow(std::size_t camera, TimeNs t_ns, const cv::
   state.last_t_ns = t_ns;
   const std::string name = imageName(camera, t_ns);
   if (!image.empty()) {
-    const bool to_gray = options_.image_format == "gray-png" && image.channels() == 3;
+    const bool to_gray = options_.image_format == "gray-png";
     Status status = tasks_->submit([this, path = joinPath(state.data_folder, name), to_gray,
                                     copy = image.clone()]() -> Status {
-      if (!to_gray) return writeImage(path, copy, encoding_);
-      cv::Mat gray;
-      cv::cvtColor(copy, gray, cv::COLOR_BGR2GRAY);
-      return writeImage(path, gray, encoding_);
+      return writeImage(path, to_gray ? grayOf(copy) : copy, encoding_);
     });
     if (!status) return status;
   }

@@ -12,8 +12,6 @@
 #include "parkade/pipeline/fused_mapper_impl.hpp"
 
 namespace parkade {
-namespace {}  // namespace
-
 PoseEstimate FusedMapper::Impl::estimate() const {
   PoseEstimate e = *odometry;
   if (e.health == Health::kInitialising) return e;

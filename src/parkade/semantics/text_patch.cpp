@@ -9,8 +9,6 @@
 #include "parkade/core/units.hpp"
 
 namespace parkade {
-namespace {}  // namespace
-
 cv::Mat sampleTextPatch(const cv::Mat& image, int fine,
                         const std::function<Eigen::Vector2d(double, double)>& pixel_at) {
   const cv::Size size(fine * kZonePatchWidth, fine * kZonePatchHeight);

@@ -11,8 +11,6 @@
 #include "parkade/sim/render/tracer.hpp"
 
 namespace parkade::sim {
-namespace {}  // namespace
-
 void Baker::layFloor(FloorGrid& grid, float cell) const {
   Eigen::Vector2f low = Eigen::Vector2f::Constant(std::numeric_limits<float>::max());
   Eigen::Vector2f high = -low;

@@ -8,8 +8,6 @@
 #include "parkade/sim/render/tracer.hpp"
 
 namespace parkade::sim {
-namespace {}  // namespace
-
 RTCScene TileTracer::movingIn(int tile, bool mirrored) const {
   if (setup_.moment->scene == nullptr) {
     return nullptr;
