@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "parkade/core/median.hpp"
+
 namespace parkade {
 namespace {
 
@@ -163,9 +165,7 @@ TimeNs longestStep(const Trajectory& trajectory, double max_gap_s) {
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
     steps.push_back(trajectory[i].t_ns - trajectory[i - 1].t_ns);
   }
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return std::max(fromSeconds(max_gap_s), 3 * *middle);
+  return std::max(fromSeconds(max_gap_s), 3 * median(std::move(steps)));
 }
 
 Result<Association> associate(const Trajectory& estimate, const Trajectory& reference,

@@ -7,15 +7,15 @@
 #include <algorithm>
 #include <limits>
 
+#include "parkade/core/median.hpp"
+
 namespace parkade {
 
 TimeNs medianStep(const std::vector<TimeNs>& t_ns) {
   if (t_ns.size() < 2) return 0;
   std::vector<TimeNs> steps;
   for (std::size_t i = 1; i < t_ns.size(); ++i) steps.push_back(t_ns[i] - t_ns[i - 1]);
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return median(std::move(steps));
 }
 
 Result<std::vector<JoinedFrame>> joinFrames(const std::vector<std::vector<TimeNs>>& stamps,

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "parkade/core/log.hpp"
+#include "parkade/core/median.hpp"
 
 namespace parkade {
 namespace {
@@ -35,9 +36,7 @@ TimeNs medianPeriod(std::vector<TimeNs> sorted) {
     if (sorted[i] > sorted[i - 1]) steps.push_back(sorted[i] - sorted[i - 1]);
   }
   if (steps.empty()) return 0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return median(std::move(steps));
 }
 
 Result<std::vector<Piece>> splitByClock(const std::vector<TimeNs>& t_ns, TimeNs window) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "parkade/core/median.hpp"
 #include "parkade/geometry/planar.hpp"
 #include "parkade/semantics/text_patch.hpp"
 
@@ -143,12 +144,7 @@ void clearBeyond(double radius, cv::Mat& patch) {
   }
   if (rim[0].empty()) return;
   cv::Vec3f floor;
-  for (int k = 0; k < 3; ++k) {
-    auto& values = rim[static_cast<std::size_t>(k)];
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    floor[k] = *middle;
-  }
+  for (int k = 0; k < 3; ++k) floor[k] = median(std::move(rim[static_cast<std::size_t>(k)]));
   for (int v = 0; v < patch.rows; ++v) {
     for (int u = 0; u < patch.cols; ++u) {
       if (distance(u, v) > radius) patch.at<cv::Vec3f>(v, u) = floor;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "parkade/core/median.hpp"
 #include "parkade/geometry/planar.hpp"
 
 namespace parkade {
@@ -178,12 +179,7 @@ class MarkPairing {
       }
       double usual =
           shape == SlotShape::kParallel ? options_.usual_parallel_depth_m : options_.usual_depth_m;
-      if (!depths.empty()) {
-        std::nth_element(depths.begin(),
-                         depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2),
-                         depths.end());
-        usual = depths[depths.size() / 2];
-      }
+      if (!depths.empty()) usual = median(std::move(depths));
       for (SlotCandidate& c : candidates_) {
         if (c.shape != shape) continue;
         // Sides may be seen further than that.

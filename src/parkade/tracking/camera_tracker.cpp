@@ -10,6 +10,7 @@
 
 #include "parkade/core/check.hpp"
 #include "parkade/core/log.hpp"
+#include "parkade/core/median.hpp"
 #include "parkade/tracking/overlap.hpp"
 
 namespace parkade {
@@ -27,12 +28,6 @@ bool isFinite(const cv::Point2f& p) {
 
 cv::Point2f toPoint(const Eigen::Vector2d& p) {
   return {static_cast<float>(p.x()), static_cast<float>(p.y())};
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // How far a warp is from keeping size and shape: the larger of its stretches and their inverses.

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "parkade/core/check.hpp"
+#include "parkade/core/median.hpp"
 #include "parkade/core/random.hpp"
 
 namespace parkade {
@@ -50,10 +51,7 @@ SO3 alignRays(const Rays& a, const Rays& b) {
     rotation = SO3(Eigen::Matrix3d(svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose()));
     std::vector<double> distance(a.size());
     for (std::size_t i = 0; i < a.size(); ++i) distance[i] = (a[i] - rotation * b[i]).norm();
-    std::vector<double> sorted = distance;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(a.size() / 2),
-                     sorted.end());
-    const double scale = std::max(sorted[a.size() / 2], 1e-4);
+    const double scale = std::max(median(distance), 1e-4);
     for (std::size_t i = 0; i < a.size(); ++i) {
       weight[i] = 1.0 / (1.0 + (distance[i] / scale) * (distance[i] / scale));
     }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <unordered_map>
 
 #include "parkade/core/log.hpp"
 #include "parkade/vio/calibration_spread.hpp"
@@ -18,16 +17,15 @@ constexpr double kSaneSpeed = 60.0;        // m/s
 constexpr double kSaneBiasGyro = 0.5;      // rad/s
 constexpr double kSaneBiasAccel = 5.0;     // m/s^2
 constexpr int kMinTrackedLandmarks = 10;   // fewer: degraded
-constexpr int kMinDisparityFeatures = 10;  // fewer say nothing about rest
 constexpr double kKeepReadings = 2.0;      // s
 constexpr double kHeldCalibration = 1e-6;  // m, rad, s
+
+}  // namespace
 
 Eigen::Vector3d originVelocity(const WindowFrame& frame, const SE3& T_imu_vehicle) {
   const Eigen::Vector3d lever = T_imu_vehicle.translation();
   return frame.state.v_odom + frame.state.R_odom_imu * (frame.gyro - frame.bias.gyro).cross(lever);
 }
-
-}  // namespace
 
 VioEstimator::Impl::Impl(const Rig& rig, const VioOptions& options)
     : options_(options), features_(options) {
@@ -195,74 +193,6 @@ void VioEstimator::Impl::optimise(int max_iterations) {
       ++solved_landmarks_;
     }
   }
-}
-
-void VioEstimator::Impl::rememberTracks(const Observations& observations, TimeNs t_ns) {
-  recent_tracks_.push_back({t_ns, observations});
-  const TimeNs span = fromSeconds(options_.standstill.window_s);
-  while (recent_tracks_.size() > 1 && recent_tracks_[1].t_ns + span <= t_ns) {
-    recent_tracks_.pop_front();
-  }
-}
-
-bool VioEstimator::Impl::imagesAtRest(const Observations& observations, bool& known) const {
-  known = false;
-  if (recent_tracks_.empty()) return false;
-  std::unordered_map<std::uint64_t, Eigen::Vector2d> before;
-  const auto key = [](std::uint64_t id, int camera) {
-    return id * 64 + static_cast<std::uint64_t>(camera);
-  };
-  for (const auto& [id, o] : recent_tracks_.front().observations) {
-    before.emplace(key(id, o.camera), o.pixel);
-  }
-  std::vector<double> moved;
-  double sigma = 0.0;
-  for (const auto& [id, o] : observations) {
-    const auto it = before.find(key(id, o.camera));
-    if (it == before.end()) continue;
-    moved.push_back((o.pixel - it->second).norm());
-    sigma += o.sigma_px;
-  }
-  if (static_cast<int>(moved.size()) < kMinDisparityFeatures) return false;
-  known = true;
-  const auto middle = moved.begin() + static_cast<std::ptrdiff_t>(moved.size() / 2);
-  std::nth_element(moved.begin(), middle, moved.end());
-  // The median length of the difference of two noisy pixels of a resting camera.
-  const double noise = 1.665 * sigma / static_cast<double>(moved.size());
-  return *middle < std::hypot(options_.standstill.max_disparity_px, noise);
-}
-
-void VioEstimator::Impl::detectStandstill(WindowFrame& frame, const Observations& observations) {
-  const VioStandstillOptions& options = options_.standstill;
-  const bool was_still = still_;
-  still_ = false;
-  if (options.enable) {
-    const std::vector<ImuReading> recent =
-        readings_.between(frame.t_ns - fromSeconds(options.window_s), frame.t_ns);
-    const StillnessCheck check = checkStillness(recent, noise_, options.noise_tolerance,
-                                                options.gyro_floor, options.accel_floor);
-    const bool covered = readings_.firstTime() <= frame.t_ns - fromSeconds(options.window_s);
-    bool images_known = false;
-    const bool images_still = imagesAtRest(observations, images_known);
-    // Without images even rolling looks like rest: the speed must be known to be small.
-    const double speed = originVelocity(frame, window_.T_imu_vehicle).norm();
-    const bool slow = speed < options.max_speed;
-    still_ = check.quiet && covered && (images_known ? images_still : (slow || was_still));
-  }
-  if (!still_) {
-    // What is noticed now may have begun any time since the stretch that was quiet.
-    const TimeNs quiet_until = frame.t_ns - fromSeconds(options.window_s);
-    for (WindowFrame& recent : window_.frames) {
-      if (recent.t_ns > quiet_until && recent.still_since != recent.id) recent.still_since = -1;
-    }
-    still_anchor_id_ = -1;
-    return;
-  }
-  if (still_anchor_id_ < 0 || window_.indexOf(still_anchor_id_) < 0) {
-    still_anchor_id_ = frame.id;
-    frame.keyframe = true;
-  }
-  frame.still_since = still_anchor_id_;
 }
 
 void VioEstimator::Impl::addBodyVelocity(WindowFrame& frame) const {

@@ -12,11 +12,15 @@
 #include "parkade/vio/estimator.hpp"
 #include "parkade/vio/feature_manager.hpp"
 #include "parkade/vio/history.hpp"
+#include "parkade/vio/image_rest.hpp"
 #include "parkade/vio/start_up.hpp"
 #include "parkade/vio/window.hpp"
 #include "parkade/vio/window_solver.hpp"
 
 namespace parkade {
+
+/// Velocity of the vehicle's origin, odom frame, m/s.
+Eigen::Vector3d originVelocity(const WindowFrame& frame, const SE3& T_imu_vehicle);
 
 class VioEstimator::Impl {
  public:
@@ -35,8 +39,6 @@ class VioEstimator::Impl {
   bool has_frame = false;
 
  private:
-  using Observations = std::vector<std::pair<std::uint64_t, WindowObservation>>;
-
   // Start-up (estimator_start.cpp).
   PoseEstimate startUp(const TrackSet& tracks);
   bool startAtRest();
@@ -65,11 +67,14 @@ class VioEstimator::Impl {
 
   // Each frame set (estimator.cpp).
   void addFrame(const TrackSet& tracks);
-  void detectStandstill(WindowFrame& frame, const Observations& observations);
-  [[nodiscard]] bool imagesAtRest(const Observations& observations, bool& known) const;
   void addBodyVelocity(WindowFrame& frame) const;
   void optimise(int max_iterations);
   void updateHealth(const TrackSet& tracks, const GateResult& gate);
+
+  // Rest (estimator_rest.cpp).
+  void detectStandstill(WindowFrame& frame, const Observations& observations);
+  /// Since the oldest of the recent tracks; nothing where too few features are known from there.
+  [[nodiscard]] std::optional<bool> imagesStill(const Observations& observations) const;
   void rememberTracks(const Observations& observations, TimeNs t_ns);
 
   // The window's frames (estimator_window.cpp).

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "parkade/core/log.hpp"
+#include "parkade/core/median.hpp"
 #include "parkade/vio/estimator_impl.hpp"
 
 namespace parkade {
@@ -33,8 +34,7 @@ PoseEstimate VioEstimator::Impl::startUp(const TrackSet& tracks) {
     start_reason_ = "no IMU readings yet";
     rememberTracks(frame.observations, frame.t_ns);
   } else {
-    bool known = false;
-    const bool images_still = imagesAtRest(frame.observations, known);
+    const bool images_still = imagesStill(frame.observations).value_or(false);
     rememberTracks(frame.observations, frame.t_ns);
     start_frames_.push_back(std::move(frame));
     const TimeNs oldest = tracks.t_ns - fromSeconds(options_.start_up.max_span_s + 0.1);
@@ -42,7 +42,7 @@ PoseEstimate VioEstimator::Impl::startUp(const TrackSet& tracks) {
            start_frames_.size() > 1) {
       start_frames_.erase(start_frames_.begin());
     }
-    started = (known && images_still && startAtRest()) || startInMotion();
+    started = (images_still && startAtRest()) || startInMotion();
   }
   if (started) {
     initialised_ = true;
@@ -184,11 +184,7 @@ VioEstimator::Impl::StartTrial VioEstimator::Impl::tryStart(std::vector<NavState
   for (const WindowFeature* feature : selected) {
     distances.push_back(1.0 / feature->inverse_distance);
   }
-  if (!distances.empty()) {
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-    std::nth_element(distances.begin(), middle, distances.end());
-    trial.median_distance = *middle;
-  }
+  if (!distances.empty()) trial.median_distance = median(std::move(distances));
   trial.window = window_;
   return trial;
 }

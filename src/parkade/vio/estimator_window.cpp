@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "parkade/core/median.hpp"
 #include "parkade/vio/estimator_impl.hpp"
 
 #include "parkade/core/units.hpp"
@@ -57,9 +58,7 @@ bool VioEstimator::Impl::wantsKeyframe(std::size_t index) const {
   // The last good frame before darkness keeps what it saw.
   if (continued < 0.4 * seen) return true;
   if (shared < options_.keyframe.min_overlap * seen) return true;
-  const auto middle = parallax.begin() + static_cast<std::ptrdiff_t>(parallax.size() / 2);
-  std::nth_element(parallax.begin(), middle, parallax.end());
-  if (*middle > options_.keyframe.parallax_deg * kDegree) return true;
+  if (median(std::move(parallax)) > options_.keyframe.parallax_deg * kDegree) return true;
   if ((frame.state.p_odom - keyframe.state.p_odom).norm() > options_.keyframe.distance_m) {
     return true;
   }

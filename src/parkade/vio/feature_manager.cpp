@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "parkade/core/median.hpp"
 #include "parkade/vio/reprojection.hpp"
 #include "parkade/vio/window_solver.hpp"
 
@@ -37,12 +38,6 @@ struct Innovation {
   double squared;  // over its covariance
   double px;
 };
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 

@@ -59,6 +59,7 @@ struct VioStandstillOptions {
   double gyro_floor = 0.003;
   double accel_floor = 0.05;
   double max_disparity_px = 0.6;
+  double max_shift_px = 0.05;
   double max_speed = 0.15;
 
   void visit(OptionVisitor& v) {
@@ -73,6 +74,9 @@ struct VioStandstillOptions {
             "Added to the limit of the accelerometer's spread.", 0.0, 10.0);
     v.field("max_disparity_px", max_disparity_px, "px",
             "Median motion of the features between frames that still counts as rest.", 0.0, 20.0);
+    v.field("max_shift_px", max_shift_px, "px",
+            "Median shift of a camera's features that still counts as rest; most cameras decide.",
+            0.0, 20.0);
     v.field("max_speed", max_speed, "m/s",
             "Without images, rest is only believed below this estimated speed.", 0.0, 10.0);
   }

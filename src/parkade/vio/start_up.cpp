@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 
+#include "parkade/core/median.hpp"
 #include "parkade/geometry/robust.hpp"
 
 namespace parkade {
@@ -290,10 +291,7 @@ LinearSolution solveLinear(std::vector<LinearFeature>& features, const std::vect
       }
       errors.push_back(std::sqrt(squared / static_cast<double>(features[f].views.size())));
     }
-    std::vector<double> sorted = errors;
-    std::nth_element(sorted.begin(),
-                     sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-    const double scale = std::max(1.5 * sorted[sorted.size() / 2], 1e-3);
+    const double scale = std::max(1.5 * median(errors), 1e-3);
     for (std::size_t f = 0; f < features.size(); ++f) {
       features[f].weight = std::sqrt(cauchy(errors[f] * errors[f], scale).weight);
     }

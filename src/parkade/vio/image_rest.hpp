@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "parkade/vio/options.hpp"
+#include "parkade/vio/window.hpp"
+
+namespace parkade {
+
+/// Features of one frame set and where they were seen.
+using Observations = std::vector<std::pair<std::uint64_t, WindowObservation>>;
+
+/// Whether the pictures stand still between two frame sets; nothing where too few features are in
+/// both. Two tests, and motion by either is motion:
+/// - the median length of the displacements, all cameras together, is more than
+///   max_disparity_px and the features' own noise: flow that spreads from a point;
+/// - in most cameras the median displacement is more than max_shift_px and three times its
+///   standard error, taken from how much the displacements differ: a slow roll, which shifts many
+///   features by little, all alike. What moves before a single camera does not count.
+std::optional<bool> imagesAtRest(const Observations& before, const Observations& now,
+                                 const VioStandstillOptions& options);
+
+}  // namespace parkade
