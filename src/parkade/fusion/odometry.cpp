@@ -51,7 +51,7 @@ PlanarIncrement planarIncrement(const PoseEstimate& before, const PoseEstimate& 
   Eigen::Matrix4d F = Eigen::Matrix4d::Identity();
   F.topLeftCorner<3, 3>() = result.T_before_after.inverse().adjoint();
   const Eigen::Matrix4d growth =
-      planarCovariance(after) - F * planarCovariance(before) * F.transpose();
+      options.told_share * (planarCovariance(after) - F * planarCovariance(before) * F.transpose());
   // Whitened by the floor, eigenvalues below one become one.
   const Eigen::Vector4d scale = least.cwiseMax(1e-12).cwiseSqrt();
   const Eigen::Vector4d unscale = scale.cwiseInverse();

@@ -17,6 +17,7 @@ struct OdometryNoiseOptions {
   double height = 0.002;
   double standing = 0.0005;
   double degraded_factor = 5.0;
+  double told_share = 0.5;
 
   void visit(OptionVisitor& v) {
     v.field("translation", translation, "m/sqrt(m)", "Drift of the place, a random walk.", 1e-5,
@@ -28,6 +29,9 @@ struct OdometryNoiseOptions {
     v.field("degraded_factor", degraded_factor, "ratio",
             "All of them grow by this where the odometry says that it is degraded or lost.", 1.0,
             1000.0);
+    v.field("told_share", told_share, "ratio",
+            "The growth of the odometry's own variance counts by this share: it is told too large.",
+            0.01, 10.0);
   }
 };
 
@@ -39,7 +43,8 @@ struct PlanarIncrement {
 };
 
 /// From the odometry's poses: the planar part of their motion. The covariance is the growth of the
-/// odometry's own, where it grew, and not less than the options say. docs/math/fusion.md, eq. (2).
+/// odometry's own times told_share, where it grew, and not less than the options say.
+/// docs/math/fusion.md, eq. (2).
 PlanarIncrement planarIncrement(const PoseEstimate& before, const PoseEstimate& after,
                                 const OdometryNoiseOptions& options);
 

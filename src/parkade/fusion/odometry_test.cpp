@@ -37,10 +37,10 @@ TEST(Odometry, CovarianceIsTheFloorOrTheGrowth) {
   const OdometryNoiseOptions options;
   Eigen::Matrix4d Q = planarIncrement(a, b, options).covariance;
   EXPECT_NEAR(std::sqrt(Q(0, 0)), options.translation, 1e-4);
-  // The odometry says more: its growth counts.
+  // The odometry says more: its growth counts, by the share.
   b.covariance(1, 1) = 0.01;
   Q = planarIncrement(a, b, options).covariance;
-  EXPECT_NEAR(Q(1, 1), 0.01, 1e-6);
+  EXPECT_NEAR(Q(1, 1), options.told_share * 0.01, 1e-6);
   EXPECT_NEAR(std::sqrt(Q(0, 0)), options.translation, 1e-4);
   // It says less than before: never below the floor.
   std::swap(a.covariance, b.covariance);
