@@ -227,6 +227,35 @@ TEST(VioSurvival, ParkedCarInTheDarkStaysWhereItIs) {
   EXPECT_LT(estimates.back().velocity_odom.norm(), 0.01);
 }
 
+// Pixels at rest repeat to some hundredths; a car that sets off is noticed by their common shift.
+TEST(VioSurvival, CarThatStartsToRollIsNoticed) {
+  TrackSimulatorOptions options;
+  options.seed = 9;
+  options.length = 8.0;
+  options.initial_rest = 2.0;
+  options.stops = {};
+  options.max_jerk = 0.3;  // the inertial unit feels nothing
+  options.pixel_sigma = 0.05;
+  options.tracks_per_camera = 60;
+  const SimulatedDrive drive = simulateDrive(testing::surroundRig(), options);
+  const auto lag = [&](double max_shift_px) {
+    VioOptions vio;
+    vio.standstill.max_shift_px = max_shift_px;
+    VioEstimator estimator(drive.rig, vio);
+    double worst = 0.0;
+    for (const PoseEstimate& e : runDrive(drive, estimator)) {
+      const Eigen::Vector3d true_place = drive.truthAt(e.t_ns).translation();
+      if (true_place.norm() > 0.2) break;
+      worst = std::max(worst, (e.T_odom_vehicle.translation() - true_place).norm());
+    }
+    return worst;
+  };
+  const double without = lag(20.0);  // px: the shift is never too large
+  const double with = lag(VioStandstillOptions().max_shift_px);
+  EXPECT_LT(with, 0.006);
+  EXPECT_GT(without, 0.012);
+}
+
 TEST(VioSurvival, SameInputSameBytes) {
   const SimulatedDrive drive = shortDrive(10.0);
   const auto a = run(drive);

@@ -71,7 +71,7 @@ Plan planMotion(const TrackSimulatorOptions& options) {
       wanted = 0.0;
     }
     double target = std::clamp((wanted - v) * 2.0, -kAcceleration, kAcceleration);
-    a += std::clamp(target - a, -8.0 * kStep, 8.0 * kStep);
+    a += std::clamp(target - a, -options.max_jerk * kStep, options.max_jerk * kStep);
     v = std::max(0.0, v + a * kStep);
     if (rest > 0.0 || (goal - s < 0.02 && v < 0.05)) {
       v = 0.0;

@@ -27,6 +27,7 @@ struct TrackSimulatorOptions {
   double final_rest = 0.5;                 ///< s
   double start_speed = 0.0;                ///< m/s at the first frame, with initial_rest 0
   double max_speed = 4.17;                 ///< m/s
+  double max_jerk = 8.0;                   ///< m/s^3
   double frame_rate = 10.0;                ///< Hz
   double imu_rate = 200.0;
   double pixel_sigma = 0.5;        ///< 0: exact pixels
