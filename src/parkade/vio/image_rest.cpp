@@ -11,10 +11,10 @@
 namespace parkade {
 namespace {
 
-constexpr std::size_t kMinFeatures = 10;    // of all cameras; fewer say nothing about rest
-constexpr std::size_t kMinOfOneCamera = 8;  // fewer say nothing about this camera
-constexpr double kDoubt = 3.0;              // standard errors that a shift may be by chance
-constexpr double kErrorOfMedian = 1.858;    // standard error times sqrt(n), over the MAD (normal)
+constexpr std::size_t kEnoughFeatures = 10;    // of all cameras; fewer say nothing about rest
+constexpr std::size_t kEnoughOfOneCamera = 8;  // fewer say nothing about this camera
+constexpr double kDoubt = 3.0;                 // standard errors that a shift may be by chance
+constexpr double kErrorOfMedian = 1.858;  // standard error times sqrt(n), over the MAD (normal)
 constexpr double kMedianOfDifference = 1.665;  // length, of two noisy pixels, over their sigma
 
 struct Displacements {
@@ -56,13 +56,13 @@ std::optional<bool> imagesAtRest(const Observations& before, const Observations&
     lengths.push_back(displacement.norm());
     sigma += o.sigma_px;
   }
-  if (lengths.size() < kMinFeatures) return std::nullopt;
+  if (lengths.size() < kEnoughFeatures) return std::nullopt;
   const double noise = kMedianOfDifference * sigma / static_cast<double>(lengths.size());
   if (median(std::move(lengths)) >= std::hypot(options.max_disparity_px, noise)) return false;
   int asked = 0;
   int moving = 0;
   for (const auto& [camera, displacements] : cameras) {
-    if (displacements.x.size() < kMinOfOneCamera) continue;
+    if (displacements.x.size() < kEnoughOfOneCamera) continue;
     ++asked;
     if (shifted(displacements, options.max_shift_px)) ++moving;
   }
