@@ -26,11 +26,10 @@ void VioEstimator::Impl::detectStandstill(WindowFrame& frame, const Observations
     const StillnessCheck check = checkStillness(recent, noise_, options.noise_tolerance,
                                                 options.gyro_floor, options.accel_floor);
     const bool covered = readings_.firstTime() <= frame.t_ns - fromSeconds(options.window_s);
-    const std::optional<bool> images_still = imagesStill(observations);
     // Without images even rolling looks like rest: the speed must be known to be small.
     const double speed = originVelocity(frame, window_.T_imu_vehicle).norm();
     const bool slow = speed < options.max_speed;
-    still_ = check.quiet && covered && images_still.value_or(slow || was_still);
+    still_ = check.quiet && covered && imagesStill(observations).value_or(slow || was_still);
   }
   if (!still_) {
     // What is noticed now may have begun any time since the stretch that was quiet.

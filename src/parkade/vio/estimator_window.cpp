@@ -5,9 +5,8 @@
 #include <map>
 
 #include "parkade/core/median.hpp"
-#include "parkade/vio/estimator_impl.hpp"
-
 #include "parkade/core/units.hpp"
+#include "parkade/vio/estimator_impl.hpp"
 
 namespace parkade {
 namespace {

@@ -41,9 +41,9 @@ struct Innovation {
 
 }  // namespace
 
-std::vector<std::pair<std::uint64_t, WindowObservation>> FeatureManager::observationsOf(
-    const std::vector<VioCamera>& cameras, const TrackSet& tracks, int frame_id) {
-  std::vector<std::pair<std::uint64_t, WindowObservation>> result;
+Observations FeatureManager::observationsOf(const std::vector<VioCamera>& cameras,
+                                            const TrackSet& tracks, int frame_id) {
+  Observations result;
   result.reserve(tracks.observations.size());
   for (const TrackObservation& track : tracks.observations) {
     if (track.camera < 0 || track.camera >= static_cast<int>(cameras.size())) continue;
@@ -60,8 +60,7 @@ std::vector<std::pair<std::uint64_t, WindowObservation>> FeatureManager::observa
   return result;
 }
 
-void FeatureManager::add(
-    Window& window, const std::vector<std::pair<std::uint64_t, WindowObservation>>& observations) {
+void FeatureManager::add(Window& window, const Observations& observations) {
   std::set<std::uint64_t> still_banned;
   for (const auto& [id, observation] : observations) {
     if (banned_.count(id) != 0) {

@@ -26,11 +26,10 @@ class FeatureManager {
   explicit FeatureManager(const VioOptions& options) : options_(options) {}
 
   /// Turns one frame set's tracks into observations; those without a ray are left out.
-  static std::vector<std::pair<std::uint64_t, WindowObservation>> observationsOf(
-      const std::vector<VioCamera>& cameras, const TrackSet& tracks, int frame_id);
+  static Observations observationsOf(const std::vector<VioCamera>& cameras, const TrackSet& tracks,
+                                     int frame_id);
 
-  void add(Window& window,
-           const std::vector<std::pair<std::uint64_t, WindowObservation>>& observations);
+  void add(Window& window, const Observations& observations);
 
   /// Compares the newest frame's observations of placed features with the predicted state. `spread`
   /// is the covariance of the newest frame's pose relative to the frames before it (position,

@@ -2,18 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <optional>
-#include <utility>
-#include <vector>
 
 #include "parkade/vio/options.hpp"
 #include "parkade/vio/window.hpp"
 
 namespace parkade {
-
-/// Features of one frame set and where they were seen.
-using Observations = std::vector<std::pair<std::uint64_t, WindowObservation>>;
 
 /// Whether the pictures stand still between two frame sets; nothing where too few features are in
 /// both. Two tests, and motion by either is motion:

@@ -14,7 +14,7 @@ namespace parkade {
 struct StartUpFrame {
   TimeNs t_ns = 0;
   int id = 0;
-  std::vector<std::pair<std::uint64_t, WindowObservation>> observations;
+  Observations observations;
 };
 
 struct StartUpAlignment {

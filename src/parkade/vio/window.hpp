@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "parkade/camera/rig.hpp"
@@ -109,6 +110,9 @@ struct WindowObservation {
   Eigen::Vector2d pixel_rate = Eigen::Vector2d::Zero();
   double sigma_px = 1.0;
 };
+
+/// Features of one frame set and where they were seen.
+using Observations = std::vector<std::pair<std::uint64_t, WindowObservation>>;
 
 /// What is known of a landmark's inverse distance before any image: it keeps those without parallax
 /// (a car at rest, pure turning) where landmarks are; a few millimetres of motion outweigh it.
