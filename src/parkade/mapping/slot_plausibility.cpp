@@ -52,4 +52,21 @@ bool holdsRoadMarking(const Corners& corners, const std::vector<MapObject>& obje
   });
 }
 
+bool holdsPillar(const Corners& corners, const std::vector<MapObject>& objects,
+                 std::int64_t observations) {
+  const double width = (corners[1] - corners[0]).norm();
+  const Vector2d u = (corners[1] - corners[0]) / width;
+  const Vector2d side = corners[3] - corners[0];
+  return std::any_of(objects.begin(), objects.end(), [&](const MapObject& object) {
+    if (object.semantic_class != SemanticClass::kPillar) return false;
+    if (2 * object.observations < observations) return false;
+    constexpr double kAside = 0.25;  // of the width: beside them stand the rows' own pillars
+    constexpr double kDeep = 0.8;    // of the depth: behind the slot, between two rows
+    const Vector2d d = object.position.head<2>() - corners[0];
+    const double deep = cross(u, d) / cross(u, side);
+    const double aside = cross(d, side) / cross(u, side) / width;
+    return deep > 0.0 && deep < kDeep && aside > kAside && aside < 1.0 - kAside;
+  });
+}
+
 }  // namespace parkade

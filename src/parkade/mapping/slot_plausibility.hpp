@@ -22,4 +22,10 @@ bool drivenThrough(const std::array<Eigen::Vector2d, 4>& corners,
 bool holdsRoadMarking(const std::array<Eigen::Vector2d, 4>& corners,
                       const std::vector<MapObject>& objects);
 
+/// Whether a pillar stands in the way into it: not at a side, nor at its rear. What two slots along
+/// the aisle leave between them, with a pillar in its middle, looks like one into the aisle. A
+/// pillar seen less than half as often as the slot (observations) is more doubtful than that one.
+bool holdsPillar(const std::array<Eigen::Vector2d, 4>& corners,
+                 const std::vector<MapObject>& objects, std::int64_t observations);
+
 }  // namespace parkade

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "parkade/mapping/map_check.hpp"
+#include "parkade/mapping/row_completion.hpp"
 #include "parkade/mapping/slot_numbers.hpp"
 #include "parkade/mapping/slot_plausibility.hpp"
 #include "parkade/mapping/slot_track.hpp"
@@ -15,10 +17,12 @@
 
 namespace parkade {
 
+using slot_registry::areOne;
 using slot_registry::Corners;
 using slot_registry::logOdds;
 using slot_registry::Matrix4;
 using slot_registry::mayBeSame;
+using slot_registry::merged;
 using slot_registry::Seen;
 using slot_registry::SlotNumber;
 using slot_registry::SlotNumbers;
@@ -34,7 +38,9 @@ struct SlotRegistry::Impl {
     Eigen::Vector2d p;
     std::int64_t anchor;
   };
-  std::vector<Place> way;  // of the vehicle's origin
+  std::vector<Place> way;              // of the vehicle's origin
+  std::vector<MapSlot> of_rows;        // that the rows have beside the tracks
+  std::vector<std::int64_t> replaced;  // tracks in whose places those lie
   SlotNumbers numbers;
 
   explicit Impl(const SlotRegistryOptions& given)
@@ -50,6 +56,10 @@ struct SlotRegistry::Impl {
   void forgetOdd();
   void mergeDuplicates();
   [[nodiscard]] std::vector<const Track*> distinct() const;
+  [[nodiscard]] bool isPlausible(const MapSlot& slot, const std::vector<MapObject>& objects,
+                                 const std::vector<Eigen::Vector2d>& driven) const;
+  [[nodiscard]] std::vector<MapSlot> seenSlots(TimeNs now_ns,
+                                               const std::vector<MapObject>& objects) const;
   [[nodiscard]] bool told(const Track& track) const {
     // Seen rarely while in plain sight: something else.
     return track.observations >= options.min_observations &&
@@ -141,39 +151,10 @@ std::vector<const Track*> SlotRegistry::Impl::distinct() const {
 }
 
 void SlotRegistry::Impl::mergeDuplicates() {
-  constexpr double kSame = 0.6;  // m, corners of one entrance, seen in passes that were drawn apart
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     for (std::size_t j = tracks.size() - 1; j > i; --j) {
-      if ((tracks[i].middle() - tracks[j].middle()).norm() > 6.0) continue;
-      const double share = overlapShare(tracks[i].corners(), tracks[j].corners());
-      if (share < options.duplicate_overlap) continue;
-      // Another reading of the place stays one: distinct() weighs them.
-      const Vector4 d = tracks[j].entrance - tracks[i].entrance;
-      if (d.head<2>().norm() > kSame || d.tail<2>().norm() > kSame) continue;
-      Track& kept = tracks[i];
-      Track other = tracks[j];
-      // The one seen more often has the better shape; the older id stays.
-      const std::int64_t id = kept.id;
-      if (other.observations > kept.observations) std::swap(kept, other);
-      kept.id = id;
-      const Eigen::Vector2d a = kept.entrance.tail<2>() - kept.entrance.head<2>();
-      const Eigen::Vector2d b = other.entrance.tail<2>() - other.entrance.head<2>();
-      if (a.dot(b) > 0.9 * a.norm() * b.norm()) {
-        const Matrix4 K =
-            (kept.covariance + other.covariance).llt().solve(kept.covariance).transpose();
-        kept.entrance += K * (other.entrance - kept.entrance);
-        kept.covariance = ((Matrix4::Identity() - K) * kept.covariance).eval();
-        kept.covariance = (0.5 * (kept.covariance + kept.covariance.transpose())).eval();
-      }
-      if (other.availability_ns > kept.availability_ns) {
-        kept.log_odds_free = other.log_odds_free;
-        kept.availability_ns = other.availability_ns;
-      }
-      kept.last_seen_ns = std::max(kept.last_seen_ns, other.last_seen_ns);
-      kept.observations += other.observations;
-      kept.misses += other.misses;
-      kept.confidence += other.confidence;
-      for (std::size_t k = 0; k < kept.shapes.size(); ++k) kept.shapes[k] += other.shapes[k];
+      if (!areOne(tracks[i], tracks[j], options.duplicate_overlap)) continue;
+      tracks[i] = merged(std::move(tracks[i]), std::move(tracks[j]));
       tracks.erase(tracks.begin() + static_cast<std::ptrdiff_t>(j));
     }
   }
@@ -250,6 +231,8 @@ void SlotRegistry::moveWithAnchors(const std::function<SE2(std::int64_t)>& corre
   }
   for (Impl::Place& place : impl_->way) place.p = correction(place.anchor) * place.p;
   impl_->numbers.moveWithAnchors(correction);
+  impl_->of_rows.clear();
+  impl_->replaced.clear();
   impl_->mergeDuplicates();
 }
 
@@ -257,34 +240,78 @@ int SlotRegistry::candidates() const {
   return static_cast<int>(impl_->tracks.size());
 }
 
+bool SlotRegistry::Impl::isPlausible(const MapSlot& slot, const std::vector<MapObject>& objects,
+                                     const std::vector<Eigen::Vector2d>& driven) const {
+  return !drivenThrough(slot.corners, driven) && !holdsRoadMarking(slot.corners, objects) &&
+         !holdsPillar(slot.corners, objects, slot.observations);
+}
+
+std::vector<MapSlot> SlotRegistry::Impl::seenSlots(TimeNs now_ns,
+                                                   const std::vector<MapObject>& objects) const {
+  std::vector<Eigen::Vector2d> driven;
+  for (const Place& place : way) driven.push_back(place.p);
+  std::vector<MapSlot> seen;
+  for (const Track* track : distinct()) {
+    if (std::find(replaced.begin(), replaced.end(), track->id) != replaced.end()) continue;
+    MapSlot slot;
+    slot.id = track->id;
+    slot.corners = track->corners();
+    slot.corner_sigma = std::sqrt(std::max(0.0, track->covariance.trace() / 4.0));
+    slot.shape = static_cast<SlotShape>(
+        std::max_element(track->shapes.begin(), track->shapes.end()) - track->shapes.begin());
+    slot.probability_free = 1.0 / (1.0 + std::exp(-fadedLogOdds(*track, now_ns)));
+    slot.observations = track->observations;
+    slot.last_seen_ns = track->last_seen_ns;
+    if (isPlausible(slot, objects, driven)) seen.push_back(std::move(slot));
+  }
+  return seen;
+}
+
+void SlotRegistry::completeRows(TimeNs now_ns, const std::vector<MapObject>& objects,
+                                const LayeredGrid& grid) {
+  Impl& m = *impl_;
+  std::vector<Eigen::Vector2d> driven;
+  for (const Impl::Place& place : m.way) driven.push_back(place.p);
+  const std::vector<MapSlot> before = std::exchange(m.of_rows, {});
+  m.replaced.clear();
+  RowCompletion rows =
+      parkade::completeRows(m.seenSlots(now_ns, objects), objects, grid, m.options.rows);
+  m.replaced = std::move(rows.replaced);
+  for (MapSlot& slot : rows.added) {
+    if (!m.isPlausible(slot, objects, driven)) continue;
+    const auto same = std::find_if(before.begin(), before.end(), [&](const MapSlot& other) {
+      constexpr double kSame = 0.5;
+      return overlapShare(slot.corners, other.corners) > kSame;
+    });
+    slot.id = same != before.end() ? same->id : m.next_id++;
+    m.of_rows.push_back(slot);
+  }
+}
+
 std::vector<MapSlot> SlotRegistry::slots(TimeNs now_ns,
                                          const std::vector<MapObject>& objects) const {
-  std::vector<Eigen::Vector2d> way;
-  for (const Impl::Place& place : impl_->way) way.push_back(place.p);
-  std::vector<MapSlot> result;
+  std::vector<MapSlot> result = impl_->seenSlots(now_ns, objects);
+  for (const MapSlot& slot : impl_->of_rows) {
+    const auto taken = [&](const MapSlot& other) {
+      return overlapShare(slot.corners, other.corners) > impl_->options.duplicate_overlap;
+    };
+    if (std::none_of(result.begin(), result.end(), taken)) result.push_back(slot);
+  }
+  std::sort(result.begin(), result.end(),
+            [](const MapSlot& a, const MapSlot& b) { return a.id < b.id; });
   std::vector<std::optional<SlotNumber>> numbers;
-  for (const Track* chosen : impl_->distinct()) {
-    const Track& track = *chosen;
-    if (drivenThrough(track.corners(), way) || holdsRoadMarking(track.corners(), objects)) continue;
-    MapSlot slot;
-    slot.id = track.id;
-    slot.corners = track.corners();
-    slot.corner_sigma = std::sqrt(std::max(0.0, track.covariance.trace() / 4.0));
-    slot.shape = static_cast<SlotShape>(std::max_element(track.shapes.begin(), track.shapes.end()) -
-                                        track.shapes.begin());
+  for (MapSlot& slot : result) {
     numbers.push_back(impl_->numbers.within(slot.corners));
-    slot.probability_free = 1.0 / (1.0 + std::exp(-impl_->fadedLogOdds(track, now_ns)));
-    slot.observations = track.observations;
-    slot.last_seen_ns = track.last_seen_ns;
+    const Corners& c = slot.corners;
+    const Eigen::Vector2d centre = 0.25 * (c[0] + c[1] + c[2] + c[3]);
     double nearest = impl_->options.zone_range_m;
     for (const MapObject& object : objects) {
       if (object.semantic_class != SemanticClass::kZoneMarker || object.text.empty()) continue;
-      const double distance = (object.position.head<2>() - track.centre()).norm();
+      const double distance = (object.position.head<2>() - centre).norm();
       if (distance >= nearest) continue;
       nearest = distance;
       slot.zone = object.text;
     }
-    result.push_back(std::move(slot));
   }
   keepSurestNumbers(numbers);
   for (std::size_t i = 0; i < result.size(); ++i) {

@@ -13,6 +13,7 @@
 #include "parkade/core/time.hpp"
 #include "parkade/geometry/se2.hpp"
 #include "parkade/mapping/parking_map.hpp"
+#include "parkade/mapping/row_completion.hpp"
 
 namespace parkade {
 
@@ -27,6 +28,7 @@ struct SlotRegistryOptions {
   double zone_range_m = 15.0;
   double number_confidence = 0.9;
   int min_number_readings = 3;
+  RowCompletionOptions rows;
 
   void visit(OptionVisitor& v) {
     v.field("association_sigma_m", association_sigma_m, "m",
@@ -49,6 +51,7 @@ struct SlotRegistryOptions {
     v.field("number_confidence", number_confidence, "probability",
             "Painted numbers are told when read this surely over all views.", 0.1, 0.999999);
     v.field("min_number_readings", min_number_readings, "count", "And this often.", 1, 1000);
+    v.group("rows", rows);
   }
 };
 
@@ -71,8 +74,13 @@ class SlotRegistry {
   /// correction(anchor): T_new_old, in the world.
   void moveWithAnchors(const std::function<SE2(std::int64_t)>& correction);
 
-  /// The slots seen often enough that the vehicle did not drive through and that hold none of the
-  /// objects for who drives (arrows, stop lines, ...), ordered by id; zones from the markers.
+  /// Adds the slots that rows of the seen ones have beside them, by the map's layers
+  /// (row_completion.hpp). They stay until the next call, or until an anchor moves.
+  void completeRows(TimeNs now_ns, const std::vector<MapObject>& objects, const LayeredGrid& grid);
+
+  /// The slots seen often enough that the vehicle did not drive through and that hold no pillar and
+  /// none of the objects for who drives (arrows, stop lines, ...), and those of their rows, ordered
+  /// by id; zones from the markers.
   /// Probabilities are as of now_ns: what was seen long ago has faded.
   [[nodiscard]] std::vector<MapSlot> slots(TimeNs now_ns,
                                            const std::vector<MapObject>& objects = {}) const;

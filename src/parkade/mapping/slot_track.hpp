@@ -64,29 +64,17 @@ inline double logOdds(double p) {
   return std::log(inside / (1.0 - inside));
 }
 
-inline Seen toWorld(const SlotObservation& o, const SE2& T, double floor) {
-  Seen seen;
-  seen.source = &o;
-  const Eigen::Vector2d left = T * o.corners[0];
-  const Eigen::Vector2d right = T * o.corners[1];
-  seen.entrance << left, right;
-  seen.rear_right = T * o.corners[2] - right;
-  seen.rear_left = T * o.corners[3] - left;
-  Matrix4 R = Matrix4::Zero();
-  R.topLeftCorner<2, 2>() = T.rotationMatrix();
-  R.bottomRightCorner<2, 2>() = T.rotationMatrix();
-  seen.covariance = R * o.entrance_covariance * R.transpose() + floor * floor * Matrix4::Identity();
-  return seen;
-}
+/// floor: m, a corner is not measured better than this.
+Seen toWorld(const SlotObservation& o, const SE2& T, double floor);
 
-// Same direction to within 25 degrees and middles nearer than half a width: no neighbour does that.
-inline bool mayBeSame(const Track& track, const Seen& seen) {
-  const Eigen::Vector2d a = track.entrance.tail<2>() - track.entrance.head<2>();
-  const Eigen::Vector2d b = seen.entrance.tail<2>() - seen.entrance.head<2>();
-  constexpr double kCosine = 0.906;
-  if (a.dot(b) < kCosine * a.norm() * b.norm()) return false;
-  const Eigen::Vector2d middle = 0.5 * (seen.entrance.head<2>() + seen.entrance.tail<2>());
-  return (middle - track.middle()).norm() < 0.45 * std::min(a.norm(), b.norm());
-}
+/// Same direction to within 25 degrees and middles nearer than half a width: no neighbour does
+/// that.
+bool mayBeSame(const Track& track, const Seen& seen);
+
+/// Whether two tracks have grown together: passes that were drawn apart saw one slot.
+bool areOne(const Track& a, const Track& b, double duplicate_overlap);
+
+/// What both have seen. The shape is that of the one seen more often, the id that of the first.
+Track merged(Track first, Track second);
 
 }  // namespace parkade::slot_registry

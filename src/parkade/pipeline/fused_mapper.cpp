@@ -198,8 +198,10 @@ Trajectory FusedMapper::finalTrajectory() const {
 }
 
 void FusedMapper::finish() {
-  impl_->followCorrections();
-  impl_->global.finish();
+  Impl& m = *impl_;
+  m.followCorrections();
+  m.global.finish();
+  m.slots.completeRows(m.last_t_ns, m.objects.objects(), m.global.grid());
 }
 
 ParkingMap FusedMapper::map(const std::string& name) const {

@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/mapping/row_completion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "parkade/mapping/map_check.hpp"
+#include "parkade/mapping/row_evidence.hpp"
+#include "parkade/mapping/row_filling.hpp"
+#include "parkade/mapping/slot_likelihood.hpp"
+#include "parkade/mapping/slot_row.hpp"
+
+namespace parkade {
+namespace {
+
+using Eigen::Vector2d;
+using slot_rows::Filling;
+using slot_rows::gatherEvidence;
+using slot_rows::Member;
+using slot_rows::Row;
+using slot_rows::SlotEvidence;
+using slot_rows::SlotLikelihood;
+
+// Slots that touch others of their row and are shaped otherwise, though seen more rarely.
+std::vector<bool> findMisfits(const std::vector<MapSlot>& told) {
+  std::vector<bool> misfits(told.size(), false);
+  for (const Row& row : slot_rows::findRows(told)) {
+    for (const Member& a : row.members) {
+      for (const Member& b : row.members) {
+        constexpr double kTouch = 0.3;  // m
+        const double apart = std::max(a.begin, b.begin) - std::min(a.end, b.end);
+        if (apart < kTouch && told[a.slot].shape != told[b.slot].shape &&
+            told[a.slot].observations < told[b.slot].observations) {
+          misfits[a.slot] = true;
+        }
+      }
+    }
+  }
+  return misfits;
+}
+
+class RowCompleter {
+ public:
+  RowCompleter(const std::vector<MapSlot>& told, const LayeredGrid& grid)
+      : told_(told), gone_(told.size(), false), misfits_(findMisfits(told)) {
+    for (const MapSlot& slot : told) {
+      evidence_.push_back(gatherEvidence(grid, slot.corners));
+      likelihood_.learn(evidence_.back());
+    }
+  }
+
+  RowCompletion complete(const std::vector<Vector2d>& pillars, const LayeredGrid& grid,
+                         const RowCompletionOptions& options) {
+    std::vector<Filling> fillings =
+        slot_rows::findFillings(told_, pillars, grid, likelihood_, options);
+    if (std::find(misfits_.begin(), misfits_.end(), true) != misfits_.end()) {
+      std::vector<MapSlot> fitting;
+      for (std::size_t i = 0; i < told_.size(); ++i) {
+        if (!misfits_[i]) fitting.push_back(told_[i]);
+      }
+      for (Filling& filling :
+           slot_rows::findFillings(fitting, pillars, grid, likelihood_, options)) {
+        fillings.push_back(std::move(filling));
+      }
+    }
+    std::stable_sort(fillings.begin(), fillings.end(),
+                     [](const Filling& a, const Filling& b) { return a.log_odds > b.log_odds; });
+    RowCompletion result;
+    for (const Filling& filling : fillings) {
+      if (!takePlace(filling, result.added)) continue;
+      result.added.insert(result.added.end(), filling.slots.begin(), filling.slots.end());
+    }
+    for (std::size_t i = 0; i < told_.size(); ++i) {
+      if (gone_[i]) result.replaced.push_back(told_[i].id);
+    }
+    return result;
+  }
+
+ private:
+  static double shareOf(const MapSlot& a, const MapSlot& b) {
+    constexpr double kFar = 9.0;  // m
+    if ((a.corners[0] - b.corners[0]).norm() > kFar) return 0.0;
+    return overlapShare(a.corners, b.corners);
+  }
+
+  // Whether nothing that is likelier lies where the filling does; what is less likely goes.
+  bool takePlace(const Filling& filling, const std::vector<MapSlot>& added) {
+    constexpr double kOverlap = 0.15;
+    std::vector<std::size_t> beaten;
+    for (const MapSlot& slot : filling.slots) {
+      for (const MapSlot& other : added) {
+        if (shareOf(slot, other) > kOverlap) return false;
+      }
+      for (std::size_t i = 0; i < told_.size(); ++i) {
+        if (gone_[i] || shareOf(slot, told_[i]) <= kOverlap) continue;
+        if (merit(i) >= filling.merit) return false;
+        beaten.push_back(i);
+      }
+    }
+    for (const std::size_t i : beaten) gone_[i] = true;
+    return true;
+  }
+
+  // Log-odds of a slot that pictures told.
+  [[nodiscard]] double merit(std::size_t i) const {
+    constexpr double kPerLook = 0.2;
+    constexpr double kMostLooks = 25.0;
+    constexpr double kMisfit = -3.0;
+    const double looks = std::min(kMostLooks, static_cast<double>(told_[i].observations));
+    return likelihood_.whole(evidence_[i]) + kPerLook * looks + (misfits_[i] ? kMisfit : 0.0);
+  }
+
+  const std::vector<MapSlot>& told_;
+  std::vector<bool> gone_;
+  std::vector<bool> misfits_;
+  std::vector<SlotEvidence> evidence_;
+  SlotLikelihood likelihood_;
+};
+
+}  // namespace
+
+RowCompletion completeRows(const std::vector<MapSlot>& told, const std::vector<MapObject>& objects,
+                           const LayeredGrid& grid, const RowCompletionOptions& options) {
+  std::vector<Vector2d> pillars;
+  for (const MapObject& object : objects) {
+    if (object.semantic_class == SemanticClass::kPillar) {
+      pillars.push_back(object.position.head<2>());
+    }
+  }
+  return RowCompleter(told, grid).complete(pillars, grid, options);
+}
+
+}  // namespace parkade

@@ -1,0 +1,235 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/mapping/row_completion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "parkade/mapping/map_check.hpp"
+#include "parkade/mapping/slot_plausibility.hpp"
+#include "parkade/mapping/slot_row.hpp"
+
+namespace parkade {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kWidth = 2.5;
+constexpr double kDepth = 5.0;
+constexpr double kMargin = 0.5;  // m from a pillar's middle to the next slot
+constexpr double kBay = 3 * kWidth + 2 * kMargin;
+
+// A row along x whose slots are entered from below: bays of three between pillars at 0, kBay, ...
+// The floor all around has been seen.
+class Garage {
+ public:
+  Garage() {
+    fill(GridLayer::kParkingLines, SemanticClass::kFloor, {-12.0, -4.0}, {36.0, 9.0});
+    fill(GridLayer::kAvailability, SemanticClass::kFloor, {-12.0, -4.0}, {36.0, 9.0});
+    for (int bay = 0; bay < 4; ++bay) {
+      MapObject pillar;
+      pillar.id = bay;
+      pillar.semantic_class = SemanticClass::kPillar;
+      pillar.position = {bay * kBay, 1.2, 0.0};
+      pillar.observations = 40;
+      objects.push_back(pillar);
+    }
+  }
+
+  static MapSlot slotAt(int bay, int place) {
+    const double x = bay * kBay + kMargin + place * kWidth;
+    MapSlot slot;
+    slot.id = 10 * bay + place + 1;
+    slot.corners = {Vector2d(x, 0.0), Vector2d(x + kWidth, 0.0), Vector2d(x + kWidth, kDepth),
+                    Vector2d(x, kDepth)};
+    slot.corner_sigma = 0.02;
+    slot.observations = 20;
+    slot.last_seen_ns = 5;
+    return slot;
+  }
+  void tell(int bay, std::set<int> places) {
+    for (const int place : places) told.push_back(slotAt(bay, place));
+  }
+  // Paints both sides and the entrance of a slot.
+  void paint(const MapSlot& slot) {
+    const auto& c = slot.corners;
+    for (const auto& [from, to] : {std::pair{c[0], c[3]}, {c[1], c[2]}, {c[0], c[1]}}) {
+      const int count = static_cast<int>((to - from).norm() / 0.02);
+      for (int i = 0; i <= count; ++i) {
+        const Vector2d p = from + (to - from) * i / count;
+        set(GridLayer::kParkingLines, SemanticClass::kSlotLine, p);
+      }
+    }
+  }
+  void paintTold() {
+    for (const MapSlot& slot : told) paint(slot);
+  }
+  void fill(GridLayer layer, SemanticClass c, const Vector2d& min, const Vector2d& max) {
+    for (double x = min.x(); x < max.x(); x += 0.05) {
+      for (double y = min.y(); y < max.y(); y += 0.05) set(layer, c, {x + 0.01, y + 0.01});
+    }
+  }
+  [[nodiscard]] RowCompletion complete() const { return completeRows(told, objects, grid); }
+
+  std::vector<MapSlot> told;
+  std::vector<MapObject> objects;
+  LayeredGrid grid;
+
+ private:
+  void set(GridLayer layer, SemanticClass c, const Vector2d& p) {
+    GridCell& cell = grid.touch(layer, grid.cellOf(p));
+    cell.semantic_class = c;
+    cell.log_odds = 40;
+  }
+};
+
+void expectAt(const MapSlot& slot, const MapSlot& expected) {
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_LT((slot.corners[k] - expected.corners[k]).norm(), 0.02) << "corner " << k;
+  }
+}
+
+TEST(RowCompletion, FindsTheSlotBetweenTwoOthers) {
+  Garage garage;
+  garage.tell(0, {0, 2});
+  garage.paintTold();
+  const RowCompletion rows = garage.complete();
+  ASSERT_EQ(rows.added.size(), 1U);
+  expectAt(rows.added[0], Garage::slotAt(0, 1));
+  EXPECT_TRUE(rows.replaced.empty());
+  EXPECT_EQ(rows.added[0].shape, SlotShape::kPerpendicular);
+  EXPECT_EQ(rows.added[0].last_seen_ns, 5);
+  EXPECT_GT(rows.added[0].probability_free, 0.8);
+  EXPECT_GE(rows.added[0].corner_sigma, RowCompletionOptions{}.corner_sigma_m);
+}
+
+TEST(RowCompletion, TellsTheVehicleInIt) {
+  Garage garage;
+  garage.tell(0, {0, 2});
+  garage.paintTold();
+  const MapSlot between = Garage::slotAt(0, 1);
+  garage.fill(GridLayer::kAvailability, SemanticClass::kVehicle,
+              between.corners[0] + Vector2d(0.3, 0.4), between.corners[2] - Vector2d(0.3, 0.4));
+  const RowCompletion rows = garage.complete();
+  ASSERT_EQ(rows.added.size(), 1U);
+  EXPECT_LT(rows.added[0].probability_free, 0.2);
+}
+
+TEST(RowCompletion, FillsABayThatShowsItsPaint) {
+  Garage garage;
+  garage.tell(0, {0, 1, 2});
+  garage.tell(2, {0, 1, 2});
+  garage.paintTold();
+  for (const int place : {0, 2}) garage.paint(Garage::slotAt(1, place));
+  const RowCompletion rows = garage.complete();
+  ASSERT_EQ(rows.added.size(), 3U);
+  for (int place = 0; place < 3; ++place) {
+    expectAt(rows.added[static_cast<std::size_t>(place)], Garage::slotAt(1, place));
+  }
+}
+
+TEST(RowCompletion, LeavesABareBayAlone) {
+  Garage garage;
+  garage.tell(0, {0, 1, 2});
+  garage.tell(2, {0, 1, 2});
+  garage.paintTold();
+  EXPECT_TRUE(garage.complete().added.empty());
+}
+
+TEST(RowCompletion, LeavesPlacesWithMarkingsForWhoDrivesAlone) {
+  Garage garage;
+  garage.tell(0, {0, 2});
+  garage.paintTold();
+  const MapSlot between = Garage::slotAt(0, 1);
+  garage.fill(GridLayer::kRoadMarkers, SemanticClass::kCrossing,
+              between.corners[0] + Vector2d(0.8, 0.0), between.corners[2] - Vector2d(0.8, 0.0));
+  EXPECT_TRUE(garage.complete().added.empty());
+}
+
+TEST(RowCompletion, LeavesGapsThatSlotsDoNotFitAlone) {
+  Garage garage;
+  garage.tell(0, {0, 2});
+  for (Vector2d& corner : garage.told[1].corners) corner.x() -= 1.0;
+  garage.paintTold();
+  EXPECT_TRUE(garage.complete().added.empty());
+}
+
+TEST(RowCompletion, GoesOnWhereTheNextSlotShowsItself) {
+  Garage garage;
+  garage.objects.clear();
+  garage.tell(0, {0, 1});
+  garage.paintTold();
+  EXPECT_TRUE(garage.complete().added.empty());
+  garage.paint(Garage::slotAt(0, 2));
+  const RowCompletion rows = garage.complete();
+  ASSERT_EQ(rows.added.size(), 1U);
+  expectAt(rows.added[0], Garage::slotAt(0, 2));
+}
+
+// Read as one slot along the aisle: what are two, beside a third that was read rightly.
+TEST(RowCompletion, ReplacesAMisfit) {
+  Garage garage;
+  garage.tell(0, {0});
+  garage.tell(1, {0, 1, 2});
+  garage.paintTold();
+  for (const int place : {1, 2}) garage.paint(Garage::slotAt(0, place));
+  MapSlot misfit = Garage::slotAt(0, 1);
+  misfit.id = 77;
+  misfit.shape = SlotShape::kParallel;
+  misfit.observations = 5;
+  misfit.corners[1] += Vector2d(kWidth, 0.0);
+  misfit.corners[2] = misfit.corners[1] + Vector2d(0.0, 2.2);
+  misfit.corners[3] = misfit.corners[0] + Vector2d(0.0, 2.2);
+  garage.told.push_back(misfit);
+  const RowCompletion rows = garage.complete();
+  EXPECT_EQ(rows.replaced, std::vector<std::int64_t>{77});
+  ASSERT_EQ(rows.added.size(), 2U);
+  expectAt(rows.added[0], Garage::slotAt(0, 1));
+  expectAt(rows.added[1], Garage::slotAt(0, 2));
+}
+
+TEST(RowCompletion, NothingToldGivesNothing) {
+  EXPECT_TRUE(Garage().complete().added.empty());
+}
+
+TEST(SlotRow, SlantedSlotsLeaveOtherMarginsBeforeThanAfter) {
+  std::vector<MapSlot> told;
+  const Vector2d side(3.0, 4.0);
+  for (int i = 0; i < 3; ++i) {
+    MapSlot slot;
+    slot.shape = SlotShape::kSlanted;
+    const Vector2d left(8.0 * i + 1.0, 0.0);
+    slot.corners = {left, left + Vector2d(3.0, 0.0), left + Vector2d(3.0, 0.0) + side, left + side};
+    told.push_back(slot);
+  }
+  // Two metres deep: 1.5 m along, seen along the sides.
+  const std::vector<Vector2d> pillars = {{0.0 + 1.5, 2.0}, {8.0 + 1.5, 2.0}, {16.0 + 1.5, 2.0}};
+  const std::vector<slot_rows::Row> rows = slot_rows::findRows(told);
+  ASSERT_EQ(rows.size(), 1U);
+  const auto patterns = slot_rows::findPatterns(rows[0], rows, told, pillars);
+  ASSERT_FALSE(patterns.empty());
+  ASSERT_EQ(patterns[0].before.size(), 3U);
+  EXPECT_NEAR(patterns[0].before[1].length, 1.0, 1e-9);
+  EXPECT_EQ(patterns[0].before[1].seen, 3);
+  EXPECT_TRUE(patterns[0].after.empty());  // 4 m is no margin: a slot fits in
+}
+
+TEST(SlotPlausibility, APillarInTheWayInDeniesASlot) {
+  const MapSlot slot = Garage::slotAt(0, 0);
+  MapObject pillar;
+  pillar.semantic_class = SemanticClass::kPillar;
+  pillar.observations = 20;
+  const auto holds = [&](double aside, double deep, std::int64_t looks) {
+    pillar.position = {slot.corners[0].x() + aside, deep, 0.0};
+    return holdsPillar(slot.corners, {pillar}, looks);
+  };
+  EXPECT_TRUE(holds(1.25, 1.0, 20));
+  EXPECT_FALSE(holds(1.25, 1.0, 100));  // the slot was seen far more often
+  EXPECT_FALSE(holds(0.2, 1.0, 20));    // at its side
+  EXPECT_FALSE(holds(1.25, 4.9, 20));   // at its rear
+  EXPECT_FALSE(holds(1.25, -1.0, 20));  // in front
+}
+
+}  // namespace
+}  // namespace parkade

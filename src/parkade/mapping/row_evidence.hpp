@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "parkade/mapping/layered_grid.hpp"
+
+// Inside of the row completion: what the map's layers hold of a place that may be a slot.
+
+namespace parkade::slot_rows {
+
+/// Shares of the cells that were seen, 0 to 1.
+struct SlotEvidence {
+  struct Line {
+    double painted = 0.0;  ///< along the line, a little to either side where that is more
+    double beside = 0.0;   ///< along lines a third of a metre beside it
+    double seen_m = 0.0;
+    [[nodiscard]] double contrast() const { return painted - beside; }
+  };
+  Line entrance;
+  Line left;
+  Line right;
+  double lane_ahead = 0.0;    ///< of the entrance's length: lane line on it
+  double lines_inside = 0.0;  ///< of what is seen of the inside
+  double lanes_inside = 0.0;
+  double markers_inside = 0.0;  ///< for who drives: arrows, stop lines, crossings, bumps, limits
+  double structure_inside = 0.0;
+  double vehicle = 0.0;
+  double seen = 0.0;  ///< of the inside
+};
+
+/// corners: entrance left and right, rear right and left.
+SlotEvidence gatherEvidence(const LayeredGrid& grid, const std::array<Eigen::Vector2d, 4>& corners);
+
+}  // namespace parkade::slot_rows

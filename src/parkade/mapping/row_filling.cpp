@@ -1,0 +1,188 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/mapping/row_filling.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "parkade/mapping/slot_row.hpp"
+
+namespace parkade::slot_rows {
+namespace {
+
+using Eigen::Vector2d;
+
+class GapFiller {
+ public:
+  GapFiller(const std::vector<MapSlot>& told, const Row& row, const Pattern& pattern,
+            const LayeredGrid& grid, const SlotLikelihood& likelihood,
+            const RowCompletionOptions& options)
+      : told_(told),
+        row_(row),
+        pattern_(pattern),
+        grid_(grid),
+        likelihood_(likelihood),
+        options_(options) {}
+
+  // None where they are not likely.
+  [[nodiscard]] Filling fill(const Gap& gap) const {
+    if (gap.at_begin == GapEnd::kOpen || gap.at_end == GapEnd::kOpen) return extend(gap);
+    const Fit fit = fitSlots(gap);
+    std::vector<Place> places;
+    for (int i = 0; i < fit.count; ++i) {
+      const double begin = fit.begin + i * fit.front;
+      places.push_back(placeAt(begin, begin + fit.front));
+    }
+    return weigh(gap, places);
+  }
+
+ private:
+  struct Place {
+    MapSlot slot;
+    SlotEvidence evidence;
+  };
+  // How many slots fill a gap, if they do. Beside pillars they leave margins that other slots of
+  // the garage leave as well: those seen most often, and that fit best.
+  struct Fit {
+    int count = 0;
+    double begin = 0.0;
+    double front = 0.0;
+    double merit = 0.0;
+  };
+  [[nodiscard]] Fit fitSlots(const Gap& gap) const {
+    static const std::vector<Margin> kNone = {{0.0, 0}};
+    const std::vector<Margin>& before = gap.at_begin == GapEnd::kPillar ? pattern_.before : kNone;
+    const std::vector<Margin>& after = gap.at_end == GapEnd::kPillar ? pattern_.after : kNone;
+    const bool stretches = gap.at_begin == GapEnd::kSlot && gap.at_end == GapEnd::kSlot;
+    const double length = gap.end - gap.begin;
+    constexpr int kMost = 9;
+    constexpr double kPerMetre = 10.0;  // sightings that outweigh a metre off
+    Fit best;
+    for (int count = 1; count <= kMost; ++count) {
+      for (const Margin& b : before) {
+        for (const Margin& a : after) {
+          const double rest = length - count * pattern_.front - b.length - a.length;
+          if (std::abs(rest) > options_.fit_m) continue;
+          const double merit = b.seen + a.seen - kPerMetre * std::abs(rest);
+          if (best.count > 0 && merit < best.merit) continue;
+          const double front = pattern_.front + (stretches ? rest / count : 0.0);
+          // What is left over lies beside the pillars.
+          double begin = gap.begin + b.length;
+          if (gap.at_begin == GapEnd::kPillar)
+            begin += gap.at_end == GapEnd::kPillar ? 0.5 * rest : rest;
+          best = {count, begin, front, merit};
+        }
+      }
+    }
+    return best;
+  }
+
+  // Where nothing bounds a row each further slot must show itself.
+  [[nodiscard]] Filling extend(const Gap& gap) const {
+    Filling filling;
+    const bool forwards = gap.at_end == GapEnd::kOpen;
+    if ((forwards ? gap.at_begin : gap.at_end) != GapEnd::kSlot || !pattern_.of_row) return filling;
+    constexpr int kMost = 3;
+    constexpr double kPrior = -2.0;
+    for (int i = 0; i < kMost; ++i) {
+      const double begin =
+          forwards ? gap.begin + i * pattern_.front : gap.end - (i + 1) * pattern_.front;
+      const Place place = placeAt(begin, begin + pattern_.front);
+      const SlotEvidence& e = place.evidence;
+      const double log_odds = kPrior + likelihood_.side(forwards ? e.right : e.left) +
+                              likelihood_.entrance(e.entrance) + SlotLikelihood::vehicle(e);
+      if (isDenied(e) || log_odds < options_.min_log_odds) break;
+      filling.log_odds += log_odds;
+      filling.merit += kPrior + likelihood_.whole(e);
+      filling.slots.push_back(place.slot);
+    }
+    return filling;
+  }
+
+  // Between two slots there is hardly room for anything else; a bay between two pillars may hold
+  // anything.
+  [[nodiscard]] Filling weigh(const Gap& gap, const std::vector<Place>& places) const {
+    const bool after_slot = gap.at_begin == GapEnd::kSlot;
+    const bool before_slot = gap.at_end == GapEnd::kSlot;
+    constexpr double kBetween = 3.0;
+    constexpr double kBeside = 1.0;
+    constexpr double kAlone = -2.0;
+    constexpr double kOtherShape = -1.0;
+    double prior = after_slot && before_slot ? kBetween : kAlone;
+    if (after_slot != before_slot) prior = kBeside;
+    if (!pattern_.of_row) prior += kOtherShape;
+    Filling filling;
+    SlotEvidence::Line entrance;
+    double known = 0.0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const SlotEvidence& e = places[i].evidence;
+      if (isDenied(e)) return {};
+      // Lines that known slots have as well say nothing new.
+      (i == 0 && after_slot ? known : filling.merit) += likelihood_.side(e.left);
+      if (i + 1 == places.size())
+        (before_slot ? known : filling.merit) += likelihood_.side(e.right);
+      filling.merit += SlotLikelihood::vehicle(e);
+      entrance.painted += e.entrance.contrast() * e.entrance.seen_m;
+      entrance.seen_m += e.entrance.seen_m;
+      filling.slots.push_back(places[i].slot);
+    }
+    // Slots of other shapes have their entrances there as well: they count once.
+    if (entrance.seen_m > 0.0) entrance.painted /= entrance.seen_m;
+    filling.merit += likelihood_.entrance(entrance);
+    filling.log_odds = prior + filling.merit;
+    filling.merit = filling.log_odds + known;
+    return filling.log_odds > options_.min_log_odds ? filling : Filling{};
+  }
+
+  [[nodiscard]] Place placeAt(double begin, double end) const {
+    Place place;
+    MapSlot& slot = place.slot;
+    const Vector2d left = row_.at(begin);
+    const Vector2d right = row_.at(end);
+    slot.corners = {left, right, right + pattern_.side, left + pattern_.side};
+    place.evidence = gatherEvidence(grid_, slot.corners);
+    slot.shape = pattern_.shape;
+    const Member& nearest = *std::min_element(
+        row_.members.begin(), row_.members.end(), [&](const Member& a, const Member& b) {
+          return std::abs(a.begin - begin) < std::abs(b.begin - begin);
+        });
+    slot.last_seen_ns = told_[nearest.slot].last_seen_ns;
+    slot.corner_sigma = std::max(options_.corner_sigma_m, told_[nearest.slot].corner_sigma);
+    constexpr double kSeen = 0.15;  // of the slot
+    constexpr double kVehicle = 0.2;
+    if (place.evidence.seen > kSeen) {
+      slot.probability_free = place.evidence.vehicle > kVehicle ? 0.1 : 0.9;
+    }
+    return place;
+  }
+
+  const std::vector<MapSlot>& told_;
+  const Row& row_;
+  const Pattern& pattern_;
+  const LayeredGrid& grid_;
+  const SlotLikelihood& likelihood_;
+  const RowCompletionOptions& options_;
+};
+
+}  // namespace
+
+std::vector<Filling> findFillings(const std::vector<MapSlot>& told,
+                                  const std::vector<Vector2d>& pillars, const LayeredGrid& grid,
+                                  const SlotLikelihood& likelihood,
+                                  const RowCompletionOptions& options) {
+  std::vector<Filling> fillings;
+  const std::vector<Row> rows = findRows(told);
+  for (const Row& row : rows) {
+    for (const Pattern& pattern : findPatterns(row, rows, told, pillars)) {
+      const GapFiller filler(told, row, pattern, grid, likelihood, options);
+      for (const Gap& gap : findGaps(row, pattern, pillars, options.reach_m)) {
+        Filling filling = filler.fill(gap);
+        if (!filling.slots.empty()) fillings.push_back(std::move(filling));
+      }
+    }
+  }
+  return fillings;
+}
+
+}  // namespace parkade::slot_rows

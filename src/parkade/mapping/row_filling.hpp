@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "parkade/mapping/layered_grid.hpp"
+#include "parkade/mapping/parking_map.hpp"
+#include "parkade/mapping/row_completion.hpp"
+#include "parkade/mapping/row_evidence.hpp"
+#include "parkade/mapping/slot_likelihood.hpp"
+
+// Inside of the row completion: slots that would fill the gaps of rows.
+
+namespace parkade::slot_rows {
+
+struct Filling {
+  std::vector<MapSlot> slots;  ///< from left to right
+  double log_odds = 0.0;       ///< for all of them being there
+  double merit = 0.0;          ///< the same, with the lines that known slots have as well
+};
+
+/// The likely fillings (min_log_odds) of all gaps in the rows of the slots told, whatever lies on
+/// them; pillars: their middles.
+std::vector<Filling> findFillings(const std::vector<MapSlot>& told,
+                                  const std::vector<Eigen::Vector2d>& pillars,
+                                  const LayeredGrid& grid, const SlotLikelihood& likelihood,
+                                  const RowCompletionOptions& options);
+
+}  // namespace parkade::slot_rows

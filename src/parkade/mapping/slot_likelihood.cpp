@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/mapping/slot_likelihood.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace parkade::slot_rows {
+namespace {
+
+constexpr double kLeastSeen = 0.5;  // m of a line
+
+bool shows(const SlotEvidence::Line& line) {
+  constexpr double kShown = 0.1;
+  return line.contrast() > kShown;
+}
+
+}  // namespace
+
+void SlotLikelihood::Lines::add(const SlotEvidence::Line& line) {
+  if (line.seen_m < kLeastSeen) return;
+  ++all;
+  if (shows(line)) ++shown;
+}
+
+double SlotLikelihood::Lines::logOdds(const SlotEvidence::Line& line) const {
+  if (line.seen_m < kLeastSeen) return 0.0;
+  constexpr double kByChance = 0.05;
+  // The slots told are those whose lines show: of others' at least every second one does not.
+  constexpr double kLeastMissed = 0.5;
+  const double missed = std::max(kLeastMissed, (all - shown + 1.0) / (all + 3.0));
+  return shows(line) ? std::log((1.0 - missed) / kByChance) : std::log(missed / (1.0 - kByChance));
+}
+
+void SlotLikelihood::learn(const SlotEvidence& evidence) {
+  sides_.add(evidence.left);
+  sides_.add(evidence.right);
+  entrances_.add(evidence.entrance);
+}
+
+double SlotLikelihood::side(const SlotEvidence::Line& line) const {
+  return sides_.logOdds(line);
+}
+
+double SlotLikelihood::entrance(const SlotEvidence::Line& line) const {
+  return entrances_.logOdds(line);
+}
+
+double SlotLikelihood::vehicle(const SlotEvidence& evidence) {
+  constexpr double kSeen = 0.15;    // of a slot
+  constexpr double kParked = 0.35;  // covered, of what is seen
+  constexpr double kOften = 0.5;    // of slots hold a vehicle
+  constexpr double kSeldom = 0.05;  // of other places
+  if (evidence.seen < kSeen) return 0.0;
+  return evidence.vehicle > kParked ? std::log(kOften / kSeldom)
+                                    : std::log((1.0 - kOften) / (1.0 - kSeldom));
+}
+
+double SlotLikelihood::whole(const SlotEvidence& evidence) const {
+  return side(evidence.left) + side(evidence.right) + entrance(evidence.entrance) +
+         vehicle(evidence);
+}
+
+bool isDenied(const SlotEvidence& evidence) {
+  constexpr double kMarkers = 0.02;
+  constexpr double kLanes = 0.02;
+  constexpr double kLines = 0.03;
+  constexpr double kStructure = 0.08;
+  constexpr double kLaneAhead = 0.6;
+  return evidence.markers_inside > kMarkers || evidence.lanes_inside > kLanes ||
+         evidence.lines_inside > kLines || evidence.structure_inside > kStructure ||
+         evidence.lane_ahead > kLaneAhead;
+}
+
+}  // namespace parkade::slot_rows

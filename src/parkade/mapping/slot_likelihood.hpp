@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "parkade/mapping/row_evidence.hpp"
+
+namespace parkade::slot_rows {
+
+/// What the layers' evidence says for there being a slot, as log-odds. How many of its lines a slot
+/// shows is learnt from the slots that pictures told. docs/math/slots.md, equations (4) to (6).
+class SlotLikelihood {
+ public:
+  /// Of a slot that was told.
+  void learn(const SlotEvidence& evidence);
+
+  [[nodiscard]] double side(const SlotEvidence::Line& line) const;
+  [[nodiscard]] double entrance(const SlotEvidence::Line& line) const;
+  [[nodiscard]] static double vehicle(const SlotEvidence& evidence);
+  /// Of all that there is of a slot alone.
+  [[nodiscard]] double whole(const SlotEvidence& evidence) const;
+
+ private:
+  struct Lines {
+    int all = 0;
+    int shown = 0;
+    void add(const SlotEvidence::Line& line);
+    [[nodiscard]] double logOdds(const SlotEvidence::Line& line) const;
+  };
+  Lines sides_;
+  Lines entrances_;
+};
+
+/// Whether the layers deny a slot: markings for who drives, lane lines, other lines or something
+/// that stands in it.
+bool isDenied(const SlotEvidence& evidence);
+
+}  // namespace parkade::slot_rows

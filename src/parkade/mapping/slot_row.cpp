@@ -1,0 +1,279 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/mapping/slot_row.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "parkade/core/median.hpp"
+#include "parkade/geometry/planar.hpp"
+
+namespace parkade::slot_rows {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kInside = 0.3;  // m: what stands deeper in a slot's width does not bound it
+
+Vector2d frontOf(const MapSlot& slot) {
+  return slot.corners[1] - slot.corners[0];
+}
+
+Vector2d middleOf(const MapSlot& slot) {
+  return 0.5 * (slot.corners[0] + slot.corners[1]);
+}
+
+bool areInOneRow(const MapSlot& a, const MapSlot& b) {
+  constexpr double kParallel = 0.9945;  // cosine of 6 degrees
+  constexpr double kOff = 0.35;         // m
+  constexpr double kApart = 14.0;       // m
+  const Vector2d u = frontOf(a).normalized();
+  const Vector2d v = frontOf(b).normalized();
+  const Vector2d between = middleOf(b) - middleOf(a);
+  return u.dot(v) > kParallel && between.norm() < kApart &&
+         std::abs(cross((u + v).normalized(), between)) < kOff;
+}
+
+Row makeRow(const std::vector<MapSlot>& slots, const std::vector<std::size_t>& of_row) {
+  Row row;
+  Vector2d mean = Vector2d::Zero();
+  Vector2d front = Vector2d::Zero();
+  double weights = 0.0;
+  const auto weightOf = [](const MapSlot& slot) {
+    constexpr double kFloor = 0.03;  // m: neighbours' corners lie no better in one line
+    return 1.0 / (slot.corner_sigma * slot.corner_sigma + kFloor * kFloor);
+  };
+  for (const std::size_t i : of_row) {
+    const double w = weightOf(slots[i]);
+    mean += w * middleOf(slots[i]);
+    front += w * frontOf(slots[i]).normalized();
+    weights += w;
+  }
+  row.origin = mean / weights;
+  row.u = front.normalized();
+  // The line through all corners, once they lie far enough apart to tell it better.
+  const Vector2d n(-row.u.y(), row.u.x());
+  double ss = 0.0;
+  double sn = 0.0;
+  for (const std::size_t i : of_row) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Vector2d d = slots[i].corners[k] - row.origin;
+      ss += weightOf(slots[i]) * d.dot(row.u) * d.dot(row.u);
+      sn += weightOf(slots[i]) * d.dot(row.u) * d.dot(n);
+    }
+  }
+  row.u = (row.u + sn / ss * n).normalized();
+  for (const std::size_t i : of_row) {
+    row.members.push_back({i, (slots[i].corners[0] - row.origin).dot(row.u),
+                           (slots[i].corners[1] - row.origin).dot(row.u)});
+  }
+  std::sort(row.members.begin(), row.members.end(),
+            [](const Member& a, const Member& b) { return a.begin < b.begin; });
+  return row;
+}
+
+bool isWithin(const Row& row, double s) {
+  return std::any_of(row.members.begin(), row.members.end(),
+                     [&](const Member& m) { return s > m.begin + kInside && s < m.end - kInside; });
+}
+
+// Whether a pillar stands in a row's depth, or a little in front.
+bool standsIn(const Row& row, const Pattern& pattern, const Vector2d& p) {
+  constexpr double kAhead = 0.6;  // m
+  const double deep = cross(row.u, p - row.origin);
+  const double depth = cross(row.u, pattern.side);
+  const double share = deep / depth;  // the same sign, whichever side the slots lie on
+  return share > -kAhead / std::abs(depth) && share < 1.0;
+}
+
+struct Margins {
+  std::vector<double> before;
+  std::vector<double> after;
+};
+
+// Beside the members of this shape that are next to a pillar. As much as a slot's front is no
+// margin: a slot was missed there.
+void gatherMargins(const Row& row, const Pattern& pattern, const std::vector<MapSlot>& slots,
+                   const std::vector<Vector2d>& pillars, Margins& margins) {
+  constexpr double kMost = 0.95;  // of the front
+  const double most = kMost * pattern.front;
+  for (const Vector2d& p : pillars) {
+    if (!standsIn(row, pattern, p)) continue;
+    const double s = alongRow(row, pattern, p);
+    if (isWithin(row, s)) continue;
+    for (const Member& m : row.members) {
+      if (slots[m.slot].shape != pattern.shape) continue;
+      if (m.begin - s > -kInside && m.begin - s < most) margins.before.push_back(m.begin - s);
+      if (s - m.end > -kInside && s - m.end < most) margins.after.push_back(s - m.end);
+    }
+  }
+}
+
+// From the shortest on.
+std::vector<Margin> countMargins(std::vector<double> lengths) {
+  constexpr double kSame = 0.12;  // m
+  std::sort(lengths.begin(), lengths.end());
+  std::vector<Margin> margins;
+  for (const double length : lengths) {
+    const auto seen = std::count_if(lengths.begin(), lengths.end(),
+                                    [&](double other) { return std::abs(other - length) < kSame; });
+    margins.push_back({length, static_cast<int>(seen)});
+  }
+  return margins;
+}
+
+Pattern patternOf(const Row& row, SlotShape shape, const std::vector<MapSlot>& slots) {
+  Pattern pattern;
+  pattern.shape = shape;
+  std::vector<double> fronts;
+  std::vector<double> along;
+  std::vector<double> across;
+  const Vector2d n(-row.u.y(), row.u.x());
+  for (const Member& m : row.members) {
+    const MapSlot& slot = slots[m.slot];
+    if (slot.shape != shape) continue;
+    const Vector2d side =
+        0.5 * (slot.corners[2] + slot.corners[3] - slot.corners[0] - slot.corners[1]);
+    fronts.push_back(m.end - m.begin);
+    along.push_back(side.dot(row.u));
+    across.push_back(side.dot(n));
+  }
+  pattern.front = median(std::move(fronts));
+  pattern.side = median(std::move(along)) * row.u + median(std::move(across)) * n;
+  return pattern;
+}
+
+// Slots that stand square to the row, sized as in all the others.
+Pattern patternOfOthers(const Row& row, SlotShape shape, const std::vector<Row>& rows,
+                        const std::vector<MapSlot>& slots) {
+  Pattern pattern;
+  pattern.shape = shape;
+  pattern.of_row = false;
+  std::vector<double> fronts;
+  std::vector<double> depths;
+  for (const Row& other : rows) {
+    for (const Member& m : other.members) {
+      if (slots[m.slot].shape != shape) continue;
+      fronts.push_back(m.end - m.begin);
+      depths.push_back((slots[m.slot].corners[3] - slots[m.slot].corners[0]).norm());
+    }
+  }
+  pattern.front = median(std::move(fronts));
+  const MapSlot& any = slots[row.members.front().slot];
+  const Vector2d n(-row.u.y(), row.u.x());
+  const double side = n.dot(any.corners[3] - any.corners[0]) > 0.0 ? 1.0 : -1.0;
+  pattern.side = side * median(std::move(depths)) * n;
+  return pattern;
+}
+
+constexpr std::array<SlotShape, 3> kShapes = {SlotShape::kPerpendicular, SlotShape::kParallel,
+                                              SlotShape::kSlanted};
+
+int countOf(const Row& row, SlotShape shape, const std::vector<MapSlot>& slots) {
+  return static_cast<int>(
+      std::count_if(row.members.begin(), row.members.end(),
+                    [&](const Member& m) { return slots[m.slot].shape == shape; }));
+}
+
+}  // namespace
+
+std::vector<Row> findRows(const std::vector<MapSlot>& slots) {
+  std::vector<std::size_t> root(slots.size());
+  std::iota(root.begin(), root.end(), 0U);
+  const auto find = [&](std::size_t i) {
+    while (root[i] != i) i = root[i] = root[root[i]];
+    return i;
+  };
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    for (std::size_t j = i + 1; j < slots.size(); ++j) {
+      if (areInOneRow(slots[i], slots[j])) root[find(j)] = find(i);
+    }
+  }
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (find(i) != i) continue;
+    std::vector<std::size_t> of_row;
+    for (std::size_t j = 0; j < slots.size(); ++j) {
+      if (find(j) == i) of_row.push_back(j);
+    }
+    rows.push_back(makeRow(slots, of_row));
+  }
+  return rows;
+}
+
+double alongRow(const Row& row, const Pattern& pattern, const Vector2d& p) {
+  return cross(p - row.origin, pattern.side) / cross(row.u, pattern.side);
+}
+
+std::vector<Pattern> findPatterns(const Row& row, const std::vector<Row>& rows,
+                                  const std::vector<MapSlot>& slots,
+                                  const std::vector<Vector2d>& pillars) {
+  std::vector<Pattern> patterns;
+  for (const SlotShape shape : kShapes) {
+    if (countOf(row, shape, slots) > 0) patterns.push_back(patternOf(row, shape, slots));
+  }
+  std::stable_sort(patterns.begin(), patterns.end(), [&](const Pattern& a, const Pattern& b) {
+    return countOf(row, a.shape, slots) > countOf(row, b.shape, slots);
+  });
+  for (const SlotShape shape : {SlotShape::kPerpendicular, SlotShape::kParallel}) {
+    const bool elsewhere = std::any_of(rows.begin(), rows.end(), [&](const Row& other) {
+      return countOf(other, shape, slots) > 0;
+    });
+    if (elsewhere && countOf(row, shape, slots) == 0) {
+      patterns.push_back(patternOfOthers(row, shape, rows, slots));
+    }
+  }
+  for (Pattern& pattern : patterns) {
+    Margins same;
+    Margins any;
+    for (const Row& other : rows) {
+      for (const SlotShape shape : kShapes) {
+        if (countOf(other, shape, slots) == 0) continue;
+        gatherMargins(other, patternOf(other, shape, slots), slots, pillars,
+                      shape == pattern.shape ? same : any);
+      }
+    }
+    pattern.before = countMargins(std::move(same.before));
+    pattern.after = countMargins(std::move(same.after));
+    if (pattern.before.empty()) pattern.before = countMargins(std::move(any.before));
+    if (pattern.after.empty()) pattern.after = countMargins(std::move(any.after));
+  }
+  return patterns;
+}
+
+std::vector<Gap> findGaps(const Row& row, const Pattern& pattern,
+                          const std::vector<Vector2d>& pillars, double reach) {
+  struct Taken {
+    double begin;
+    double end;
+    GapEnd by;
+  };
+  std::vector<Taken> taken;
+  for (const Member& m : row.members) taken.push_back({m.begin, m.end, GapEnd::kSlot});
+  const double first = row.members.front().begin;
+  double last = first;
+  for (const Member& m : row.members) last = std::max(last, m.end);
+  for (const Vector2d& p : pillars) {
+    if (!standsIn(row, pattern, p)) continue;
+    const double s = alongRow(row, pattern, p);
+    if (s < first - reach || s > last + reach || isWithin(row, s)) continue;
+    taken.push_back({s, s, GapEnd::kPillar});
+  }
+  std::sort(taken.begin(), taken.end(),
+            [](const Taken& a, const Taken& b) { return a.begin < b.begin; });
+  std::vector<Gap> gaps;
+  const Taken& front = taken.front();
+  gaps.push_back({front.begin - reach, front.begin, GapEnd::kOpen, front.by});
+  Taken before = front;
+  for (const Taken& next : taken) {
+    if (next.begin > before.end) gaps.push_back({before.end, next.begin, before.by, next.by});
+    if (next.end > before.end) before = next;
+  }
+  gaps.push_back({before.end, before.end + reach, before.by, GapEnd::kOpen});
+  return gaps;
+}
+
+}  // namespace parkade::slot_rows
