@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "parkade/mapping/map_check.hpp"
+#include "parkade/mapping/row_alignment.hpp"
 #include "parkade/mapping/row_evidence.hpp"
 #include "parkade/mapping/row_filling.hpp"
 #include "parkade/mapping/slot_likelihood.hpp"
@@ -44,8 +45,9 @@ std::vector<bool> findMisfits(const std::vector<MapSlot>& told) {
 class RowCompleter {
  public:
   RowCompleter(const std::vector<MapSlot>& told, const LayeredGrid& grid)
-      : told_(told), gone_(told.size(), false), misfits_(findMisfits(told)) {
-    for (const MapSlot& slot : told) {
+      : told_(told), moved_(slot_rows::alignRows(told_)), gone_(told.size(), false) {
+    misfits_ = findMisfits(told_);
+    for (const MapSlot& slot : told_) {
       evidence_.push_back(gatherEvidence(grid, slot.corners));
       likelihood_.learn(evidence_.back());
     }
@@ -71,6 +73,11 @@ class RowCompleter {
     for (const Filling& filling : fillings) {
       if (!takePlace(filling, result.added)) continue;
       result.added.insert(result.added.end(), filling.slots.begin(), filling.slots.end());
+    }
+    for (const std::size_t i : moved_) {
+      if (gone_[i]) continue;
+      gone_[i] = true;
+      result.added.push_back(told_[i]);
     }
     for (std::size_t i = 0; i < told_.size(); ++i) {
       if (gone_[i]) result.replaced.push_back(told_[i].id);
@@ -112,7 +119,8 @@ class RowCompleter {
     return likelihood_.whole(evidence_[i]) + kPerLook * looks + (misfits_[i] ? kMisfit : 0.0);
   }
 
-  const std::vector<MapSlot>& told_;
+  std::vector<MapSlot> told_;  // aligned
+  std::vector<std::size_t> moved_;
   std::vector<bool> gone_;
   std::vector<bool> misfits_;
   std::vector<SlotEvidence> evidence_;

@@ -31,14 +31,16 @@ struct RowCompletionOptions {
 };
 
 struct RowCompletion {
-  std::vector<MapSlot> added;          ///< with id 0 and no observations
+  std::vector<MapSlot> added;          ///< with id 0 and no observations, unless only moved
   std::vector<std::int64_t> replaced;  ///< ids of slots told, in their order
 };
 
 /// Slots that no picture told and that the map as a whole does: rows of slots are alike, and where
 /// a gap between two of them, or between one and a pillar, is as long as one or several more, and
 /// the layers show their paint or vehicles in them and nothing that says otherwise, there they are.
-/// Readings of another shape that were told there instead, less likely, are replaced. told: the
+/// Readings of another shape that were told there instead, less likely, are replaced. Slots whose
+/// entrance lies off their row's line are moved to it (row_alignment.hpp): replaced and added with
+/// their id. told: the
 /// slots that were observed; objects: pillars. World frame. docs/math/slots.md.
 RowCompletion completeRows(const std::vector<MapSlot>& told, const std::vector<MapObject>& objects,
                            const LayeredGrid& grid, const RowCompletionOptions& options = {});

@@ -283,7 +283,7 @@ void SlotRegistry::completeRows(TimeNs now_ns, const std::vector<MapObject>& obj
       constexpr double kSame = 0.5;
       return overlapShare(slot.corners, other.corners) > kSame;
     });
-    slot.id = same != before.end() ? same->id : m.next_id++;
+    if (slot.id == 0) slot.id = same != before.end() ? same->id : m.next_id++;
     m.of_rows.push_back(slot);
   }
 }

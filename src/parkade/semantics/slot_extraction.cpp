@@ -65,14 +65,15 @@ std::vector<SlotObservation> extractSlots(const BevImage& bev, const BevLabels& 
   const LabelProbe probe(labels);
   const std::vector<SlotMark> marks = findSlotMarks(grey, probe, segments);
   std::vector<SlotCandidate> candidates = pairSlotMarks(marks, probe, options);
-  std::vector<const SlotCandidate*> likely = likelySlots(candidates, probe, options.min_confidence);
+  std::vector<const SlotCandidate*> likely =
+      likelySlots(candidates, probe, views, options.min_confidence);
   // The rows of these slots, with lines that are too worn for labels.
   std::vector<SlotMark> all = findFaintMarks(labels, likely, marks, options.min_faint_contrast);
   std::vector<SlotCandidate> in_rows;
   if (!all.empty()) {
     all.insert(all.end(), marks.begin(), marks.end());
     in_rows = pairSlotMarks(all, probe, options);
-    for (const SlotCandidate* slot : likelySlots(in_rows, probe, options.min_confidence)) {
+    for (const SlotCandidate* slot : likelySlots(in_rows, probe, views, options.min_confidence)) {
       if (slot->left->isFaint() || slot->right->isFaint()) likely.push_back(slot);
     }
     likely = withoutOverlaps(std::move(likely));

@@ -33,8 +33,8 @@ double shareInside(const std::array<Vector2d, 4>& a, const std::array<Vector2d, 
 class SlotRanking {
  public:
   SlotRanking(std::vector<SlotCandidate>& candidates, const LabelProbe& probe,
-              double min_confidence)
-      : candidates_(candidates), probe_(probe), min_confidence_(min_confidence) {}
+              const BevViews& views, double min_confidence)
+      : candidates_(candidates), probe_(probe), views_(views), min_confidence_(min_confidence) {}
 
   std::vector<const SlotCandidate*> likely() {
     for (SlotCandidate& candidate : candidates_) candidate.score = score(candidate);
@@ -77,7 +77,9 @@ class SlotRanking {
     if (c.shape == SlotShape::kSlanted && c.marking != SlotMarking::kClosed && neighbours(c) == 0.0)
       s -= 1.5;
     if (c.shape == SlotShape::kParallel && length < 2.45 * c.length()) s -= 2.0;
-    return s + neighbours(c);
+    s += neighbours(c);
+    if (s > 0.0 && hasPillarInside(c)) s -= 5.0;
+    return s;
   }
 
   // Room to drive: floor, arrows, lane lines; no slot lines, no wall. u: along the entrance.
@@ -128,6 +130,33 @@ class SlotRanking {
       }
     }
     return stops > samples / 40;
+  }
+
+  // Whether the foot of a pillar is seen between the sides, where the way in leads: of what stands
+  // upright only the edge towards the camera lies on the ground.
+  [[nodiscard]] bool hasPillarInside(const SlotCandidate& c) const {
+    constexpr double kAside = 0.25;  // of the width
+    constexpr double kDeep = 0.5;    // of the depth
+    constexpr double kStep = 0.08;   // m
+    constexpr int kLeast = 4;        // samples: a foot of 0.3 m
+    const double width = c.front().norm();
+    const double across = kStep / width;
+    const double along = kStep / c.length();
+    int feet = 0;
+    for (double a = kAside; a <= 1.0 - kAside; a += across) {
+      const Vector2d p = (1.0 - a) * c.corners[0] + a * c.corners[1];
+      const Vector2d q = (1.0 - a) * c.corners[3] + a * c.corners[2];
+      for (double b = 0.0; b < kDeep; b += along) {
+        if (isPillarFoot((1.0 - b) * p + b * q)) ++feet;
+      }
+    }
+    return feet >= kLeast;
+  }
+
+  [[nodiscard]] bool isPillarFoot(const Vector2d& p) const {
+    if (probe_.at(p) != SemanticClass::kPillar) return false;
+    const Vector2d towards = (views_.viewAt(probe_.labels().geometry, p).foot - p).normalized();
+    return !probe_.isHidden(p + 0.08 * towards) && !probe_.isHidden(p + 0.2 * towards);
   }
 
   // Whether the car, driving on, would pass beside the way into the slot, not over it: its aisle
@@ -266,6 +295,7 @@ class SlotRanking {
 
   std::vector<SlotCandidate>& candidates_;
   const LabelProbe& probe_;
+  const BevViews& views_;
   double min_confidence_;
 };
 
@@ -288,8 +318,9 @@ std::vector<const SlotCandidate*> withoutOverlaps(std::vector<const SlotCandidat
 }
 
 std::vector<const SlotCandidate*> likelySlots(std::vector<SlotCandidate>& candidates,
-                                              const LabelProbe& probe, double min_confidence) {
-  return SlotRanking(candidates, probe, min_confidence).likely();
+                                              const LabelProbe& probe, const BevViews& views,
+                                              double min_confidence) {
+  return SlotRanking(candidates, probe, views, min_confidence).likely();
 }
 
 }  // namespace parkade
