@@ -32,18 +32,19 @@ bool liesOn(const MapSlot& slot, const Line& line) {
          std::abs(line.off(slot.corners[1])) < kOnLine;
 }
 
-std::vector<const MapSlot*> neighboursOf(const MapSlot& slot, const std::vector<MapSlot>& slots) {
+Vector2d inwardOf(const MapSlot& slot) {
+  return (slot.corners[3] - slot.corners[0]).normalized();
+}
+
+// Those with sides along those of the i-th, whatever their entrances.
+std::vector<const MapSlot*> neighboursOf(std::size_t i, const std::vector<MapSlot>& slots) {
   constexpr double kNear = 12.0;        // m
-  constexpr double kAside = 1.5;        // m
   constexpr double kParallel = 0.9903;  // cosine of 8 degrees
-  const Vector2d u = (slot.corners[1] - slot.corners[0]).normalized();
   std::vector<const MapSlot*> found;
-  for (const MapSlot& other : slots) {
-    const Vector2d between = middleOf(other) - middleOf(slot);
-    const Vector2d v = (other.corners[1] - other.corners[0]).normalized();
-    if (&other != &slot && other.shape == slot.shape && u.dot(v) > kParallel &&
-        between.norm() < kNear && std::abs(cross(u, between)) < kAside) {
-      found.push_back(&other);
+  for (std::size_t j = 0; j < slots.size(); ++j) {
+    if (j != i && (middleOf(slots[j]) - middleOf(slots[i])).norm() < kNear &&
+        inwardOf(slots[i]).dot(inwardOf(slots[j])) > kParallel) {
+      found.push_back(&slots[j]);
     }
   }
   return found;
@@ -72,13 +73,12 @@ std::optional<Line> lineOf(const std::vector<const MapSlot*>& slots) {
   return best;
 }
 
-bool align(MapSlot& slot, const std::vector<MapSlot>& slots) {
-  const std::vector<const MapSlot*> neighbours = neighboursOf(slot, slots);
+bool align(MapSlot& slot, const std::vector<const MapSlot*>& neighbours) {
   const std::optional<Line> line = lineOf(neighbours);
   if (!line) return false;
-  const Vector2d inward = (slot.corners[3] - slot.corners[0]).normalized();
+  const Vector2d inward = inwardOf(slot);
   constexpr double kNoticeable = 0.15;  // m
-  constexpr double kMost = 1.3;
+  constexpr double kMost = 1.6;
   constexpr double kSteep = 0.5;
   const double slope = cross(line->u, inward);
   if (std::abs(slope) < kSteep) return false;
@@ -87,9 +87,18 @@ bool align(MapSlot& slot, const std::vector<MapSlot>& slots) {
   const double farther = std::max(std::abs(left), std::abs(right));
   if (farther < kNoticeable || farther > kMost) return false;
   std::vector<double> depths;
+  const MapSlot* nearest = nullptr;
   for (const MapSlot* other : neighbours) {
-    if (liesOn(*other, *line)) depths.push_back((other->corners[3] - other->corners[0]).norm());
+    if (!liesOn(*other, *line)) continue;
+    depths.push_back((other->corners[3] - other->corners[0]).norm());
+    const double distance = (middleOf(*other) - middleOf(slot)).norm();
+    if (nearest == nullptr || distance < (middleOf(*nearest) - middleOf(slot)).norm())
+      nearest = other;
   }
+  // Parallel slots between others keep their shape: they are deep as they are.
+  if ((nearest->shape == SlotShape::kParallel) != (slot.shape == SlotShape::kParallel))
+    return false;
+  slot.shape = nearest->shape;
   const double depth = median(std::move(depths));
   slot.corners[0] += left * inward;
   slot.corners[1] += right * inward;
@@ -101,18 +110,19 @@ bool align(MapSlot& slot, const std::vector<MapSlot>& slots) {
 }  // namespace
 
 std::vector<std::size_t> alignRows(std::vector<MapSlot>& slots) {
-  const std::vector<MapSlot> given = slots;
-  std::vector<std::size_t> moved;
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    MapSlot slot = given[i];
-    // Its neighbours as they were: none moves on another's account.
-    std::vector<MapSlot> others = given;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    if (!align(slot, others)) continue;
-    slots[i] = slot;
-    moved.push_back(i);
+  constexpr int kPasses = 3;  // those moved help their neighbours
+  std::vector<bool> moved(slots.size(), false);
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const std::vector<MapSlot> given = slots;
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+      if (align(slots[i], neighboursOf(i, given))) moved[i] = true;
+    }
   }
-  return moved;
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (moved[i]) indices.push_back(i);
+  }
+  return indices;
 }
 
 }  // namespace parkade::slot_rows

@@ -137,6 +137,25 @@ TEST(RowCompletion, LeavesABareBayAlone) {
   EXPECT_TRUE(garage.complete().added.empty());
 }
 
+// Between bays full of slots a parked vehicle and one line are enough, beyond them not.
+TEST(RowCompletion, BelievesABayBetweenTwoOthersSooner) {
+  for (const bool between : {true, false}) {
+    Garage garage;
+    garage.tell(0, {0, 1, 2});
+    if (between) garage.tell(2, {0, 1, 2});
+    garage.paintTold();
+    MapSlot first = Garage::slotAt(1, 0);
+    garage.fill(GridLayer::kAvailability, SemanticClass::kVehicle,
+                first.corners[0] + Vector2d(0.3, 0.4), first.corners[2] - Vector2d(0.3, 0.4));
+    for (double y = 0.5; y < 3.0; y += 0.05) {
+      garage.fill(GridLayer::kParkingLines, SemanticClass::kSlotLine,
+                  first.corners[1] + Vector2d(-0.05, y),
+                  first.corners[1] + Vector2d(0.05, y + 0.05));
+    }
+    EXPECT_EQ(garage.complete().added.size(), between ? 3U : 0U);
+  }
+}
+
 TEST(RowCompletion, LeavesPlacesWithMarkingsForWhoDrivesAlone) {
   Garage garage;
   garage.tell(0, {0, 2});
@@ -187,6 +206,27 @@ TEST(RowCompletion, ReplacesAMisfit) {
   ASSERT_EQ(rows.added.size(), 2U);
   expectAt(rows.added[0], Garage::slotAt(0, 1));
   expectAt(rows.added[1], Garage::slotAt(0, 2));
+}
+
+TEST(RowCompletion, MovesAnEntranceToItsRow) {
+  Garage garage;
+  garage.tell(0, {0, 1, 2});
+  garage.tell(1, {0, 1, 2});
+  garage.paintTold();
+  for (const std::size_t k : {0U, 1U}) garage.told[4].corners[k].y() += 0.5;  // a worn end
+  const RowCompletion rows = garage.complete();
+  EXPECT_EQ(rows.replaced, std::vector<std::int64_t>{garage.told[4].id});
+  ASSERT_EQ(rows.added.size(), 1U);
+  expectAt(rows.added[0], Garage::slotAt(1, 1));
+  EXPECT_EQ(rows.added[0].id, garage.told[4].id);
+  EXPECT_EQ(rows.added[0].observations, garage.told[4].observations);
+  // A row of its own, farther back, stays.
+  for (std::size_t i = 3; i < 6; ++i) {
+    for (Vector2d& corner : garage.told[i].corners) corner.y() = corner.y() + (i == 4 ? 0.0 : 0.5);
+  }
+  garage.told[4].corners[2].y() += 0.5;
+  garage.told[4].corners[3].y() += 0.5;
+  for (const MapSlot& slot : garage.complete().added) EXPECT_EQ(slot.observations, 0);
 }
 
 TEST(RowCompletion, NothingToldGivesNothing) {

@@ -100,6 +100,16 @@ class GapFiller {
     return filling;
   }
 
+  // Whether a slot of this shape is next to the pillar at s, before it or behind.
+  [[nodiscard]] bool hasSlotBy(double s, bool before) const {
+    constexpr double kInside = 0.3;
+    return std::any_of(row_.members.begin(), row_.members.end(), [&](const Member& m) {
+      const double apart = before ? s - m.end : m.begin - s;
+      return told_[m.slot].shape == pattern_.shape && apart > -kInside &&
+             apart < 0.5 * pattern_.front;
+    });
+  }
+
   // Between two slots there is hardly room for anything else; a bay between two pillars may hold
   // anything.
   [[nodiscard]] Filling weigh(const Gap& gap, const std::vector<Place>& places) const {
@@ -109,8 +119,13 @@ class GapFiller {
     constexpr double kBeside = 1.0;
     constexpr double kAlone = -2.0;
     constexpr double kOtherShape = -1.0;
+    constexpr double kNextBay = 1.5;
     double prior = after_slot && before_slot ? kBetween : kAlone;
     if (after_slot != before_slot) prior = kBeside;
+    if (!after_slot && !before_slot) {
+      prior += kNextBay * (hasSlotBy(gap.begin, true) ? 1.0 : 0.0);
+      prior += kNextBay * (hasSlotBy(gap.end, false) ? 1.0 : 0.0);
+    }
     if (!pattern_.of_row) prior += kOtherShape;
     Filling filling;
     SlotEvidence::Line entrance;
