@@ -23,7 +23,7 @@ struct Line {
 
 constexpr double kOnLine = 0.1;  // m
 
-Vector2d middleOf(const MapSlot& slot) {
+Vector2d entranceMiddle(const MapSlot& slot) {
   return 0.5 * (slot.corners[0] + slot.corners[1]);
 }
 
@@ -42,7 +42,7 @@ std::vector<const MapSlot*> neighboursOf(std::size_t i, const std::vector<MapSlo
   constexpr double kParallel = 0.9903;  // cosine of 8 degrees
   std::vector<const MapSlot*> found;
   for (std::size_t j = 0; j < slots.size(); ++j) {
-    if (j != i && (middleOf(slots[j]) - middleOf(slots[i])).norm() < kNear &&
+    if (j != i && (entranceMiddle(slots[j]) - entranceMiddle(slots[i])).norm() < kNear &&
         inwardOf(slots[i]).dot(inwardOf(slots[j])) > kParallel) {
       found.push_back(&slots[j]);
     }
@@ -59,9 +59,9 @@ std::optional<Line> lineOf(const std::vector<const MapSlot*>& slots) {
   int most = 0;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     for (std::size_t j = i + 1; j < slots.size(); ++j) {
-      const Vector2d between = middleOf(*slots[j]) - middleOf(*slots[i]);
+      const Vector2d between = entranceMiddle(*slots[j]) - entranceMiddle(*slots[i]);
       if (between.norm() < kApart) continue;
-      const Line line{middleOf(*slots[i]), between.normalized()};
+      const Line line{entranceMiddle(*slots[i]), between.normalized()};
       const auto on = std::count_if(slots.begin(), slots.end(),
                                     [&](const MapSlot* slot) { return liesOn(*slot, line); });
       if (on <= most) continue;
@@ -91,8 +91,8 @@ bool align(MapSlot& slot, const std::vector<const MapSlot*>& neighbours) {
   for (const MapSlot* other : neighbours) {
     if (!liesOn(*other, *line)) continue;
     depths.push_back((other->corners[3] - other->corners[0]).norm());
-    const double distance = (middleOf(*other) - middleOf(slot)).norm();
-    if (nearest == nullptr || distance < (middleOf(*nearest) - middleOf(slot)).norm())
+    const double distance = (entranceMiddle(*other) - entranceMiddle(slot)).norm();
+    if (nearest == nullptr || distance < (entranceMiddle(*nearest) - entranceMiddle(slot)).norm())
       nearest = other;
   }
   // Parallel slots between others keep their shape: they are deep as they are.

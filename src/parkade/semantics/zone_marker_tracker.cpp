@@ -100,9 +100,8 @@ Solution solve(Iterator begin, Iterator end, Eigen::Vector4d state,
   return solution;
 }
 
-ZoneMarker markerOf(std::uint64_t id, const Solution& solution, const TextEvidence& text,
+ZoneMarker markerOf(std::uint64_t id, const Solution& solution, const TextReading& best,
                     std::size_t views) {
-  const TextReading best = text.best();
   ZoneMarker marker;
   marker.id = id;
   marker.position = solution.state.head<3>();
@@ -174,7 +173,11 @@ void ZoneMarkerTracker::add(const std::vector<ZoneMarkerView>& views, TimeNs t_n
     if (!view_used[j] && views[j].height_ratio > 0.0) start(views[j], t_ns);
   }
   std::erase_if(tracks_, [&](const Track& track) {
-    return toSeconds(t_ns - track.seen_ns) > options_.forget_s;
+    if (toSeconds(t_ns - track.seen_ns) <= options_.forget_s) return false;
+    constexpr double kSure = 0.95;
+    const TextReading text = track.text.best();
+    if (track.told > 0 && text.probability > kSure) format_.add(text.text);
+    return true;
   });
 }
 
@@ -183,13 +186,13 @@ std::vector<ZoneMarker> ZoneMarkerTracker::takeTold() {
   for (Track& track : tracks_) {
     const std::size_t fresh = track.views.size() - track.told;
     if (fresh < static_cast<std::size_t>(options_.told_views)) continue;
-    if (track.text.best().probability < options_.told_confidence) continue;
+    if (track.text.best(format_).probability < options_.told_confidence) continue;
     const auto begin = track.views.begin() + static_cast<std::ptrdiff_t>(track.told);
     const Solution solution = solve(begin, track.views.end(), track.state, options_);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> spread(
         solution.covariance.topLeftCorner<2, 2>(), Eigen::EigenvaluesOnly);
     if (std::sqrt(spread.eigenvalues()[1]) > options_.told_sigma_m) continue;
-    told.push_back(markerOf(track.id, solution, track.text, fresh));
+    told.push_back(markerOf(track.id, solution, track.text.best(format_), fresh));
     track.told = track.views.size();
   }
   return told;
@@ -198,8 +201,8 @@ std::vector<ZoneMarker> ZoneMarkerTracker::takeTold() {
 std::vector<ZoneMarker> ZoneMarkerTracker::followed() const {
   std::vector<ZoneMarker> all;
   for (const Track& track : tracks_) {
-    all.push_back(
-        markerOf(track.id, {track.state, track.covariance}, track.text, track.views.size()));
+    all.push_back(markerOf(track.id, {track.state, track.covariance}, track.text.best(format_),
+                           track.views.size()));
   }
   return all;
 }

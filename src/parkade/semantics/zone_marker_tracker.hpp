@@ -66,7 +66,8 @@ struct ZoneMarker {
 /// Follows zone markers over pictures and places them: for each the position and the height that
 /// explain all bearings and apparent heights best, robustly (docs/math/zone_markers.md). What is
 /// told once is not told again: each ZoneMarker rests on views of its own, so that a map may take
-/// one as a measurement independent of those before.
+/// one as a measurement independent of those before. Texts that were read surely tell how the
+/// others are made up.
 class ZoneMarkerTracker {
  public:
   explicit ZoneMarkerTracker(const ZoneMarkerTrackerOptions& options) : options_(options) {}
@@ -97,6 +98,7 @@ class ZoneMarkerTracker {
   void start(const ZoneMarkerView& view, TimeNs t_ns);
 
   ZoneMarkerTrackerOptions options_;
+  TextFormat format_;
   std::vector<Track> tracks_;
   std::uint64_t next_id_ = 1;
   TimeNs last_ns_ = 0;

@@ -130,6 +130,50 @@ TEST(TextEvidence, ViewsOutvoteAWrongOne) {
   EXPECT_GT(evidence.best().probability, 0.99);
 }
 
+TEST(TextFormat, OtherMarkersTellHowOneIsMadeUp) {
+  EXPECT_EQ(TextFormat::patternOf("B12"), "A0");
+  EXPECT_EQ(TextFormat::patternOf("C-3"), "A-0");
+  EXPECT_EQ(TextFormat::patternOf("117KH"), "0AA");
+  TextFormat format;
+  EXPECT_EQ(format.logPrior("5H5"), 0.0);  // nothing is known yet
+  TextEvidence evidence;
+  evidence.add({{"5H5", 0.6}, {"5H", 0.3}});
+  EXPECT_EQ(evidence.best(format).text, "5H5");
+  for (int i = 0; i < 8; ++i) format.add(std::to_string(i + 3) + "K");
+  EXPECT_EQ(evidence.best(format).text, "5H");
+  // Many clear readings stand against it.
+  for (int i = 0; i < 4; ++i) evidence.add({{"5H5", 0.95}});
+  EXPECT_EQ(evidence.best(format).text, "5H5");
+}
+
+TEST(ZoneMarkerTracker, LearnsHowMarkersAreCalled) {
+  ZoneMarkerTrackerOptions options;
+  options.forget_s = 1.0;
+  options.told_sigma_m = 0.5;
+  ZoneMarkerTracker tracker(options);
+  TimeNs t_ns = 0;
+  const auto pass = [&](const Eigen::Vector3d& marker,
+                        const std::vector<std::vector<TextReading>>& readings, int times) {
+    for (int k = 0; k < 8; ++k) {
+      ZoneMarkerView view = viewOf(marker, options.height_m,
+                                   marker + Eigen::Vector3d(0.7 * k - 5.0, -3.0, -0.8), nullptr);
+      if (k < times) view.readings = readings;
+      tracker.add({view}, t_ns);
+      t_ns += 100'000'000;
+    }
+    const std::vector<ZoneMarker> told = tracker.takeTold();
+    t_ns += 2'000'000'000;
+    return told.empty() ? std::string() : told.front().text;
+  };
+  const std::vector<std::vector<TextReading>> doubtful = {{{"5H5", 0.6}, {"5H", 0.3}}};
+  options.told_confidence = 0.0;
+  tracker = ZoneMarkerTracker(options);
+  EXPECT_EQ(pass({5.0, 3.0, 1.7}, doubtful, 1), "5H5");
+  for (int i = 0; i < 6; ++i)
+    pass({100.0 + 50.0 * i, 3.0, 1.7}, says(std::to_string(i) + "K", 0.99), 3);
+  EXPECT_EQ(pass({600.0, 3.0, 1.7}, doubtful, 1), "5H");
+}
+
 TEST(TextEvidence, PartsSpeakForTheWhole) {
   TextEvidence evidence;
   for (const char* part : {"12", "2F", "12"}) evidence.add({{part, 0.9}});

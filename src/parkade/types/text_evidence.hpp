@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "parkade/types/text_format.hpp"
 #include "parkade/types/text_reading.hpp"
 
 namespace parkade {
@@ -57,8 +58,9 @@ class TextEvidence {
   /// Logarithm of a text's likelihood ratio.
   [[nodiscard]] double support(const std::string& text) const { return evidenceFor(text); }
 
-  /// The best text and its probability; empty and 0 where nothing was read.
-  [[nodiscard]] TextReading best() const {
+  /// The best text and its probability; empty and 0 where nothing was read. format: how the
+  /// garage's other markers are called.
+  [[nodiscard]] TextReading best(const TextFormat& format = {}) const {
     constexpr double kNone = 2.0;  // of all texts that no reading knows
     constexpr std::size_t kCandidates = 8;
     std::vector<std::pair<double, const std::string*>> candidates;
@@ -69,7 +71,7 @@ class TextEvidence {
     TextReading result;
     double most = 0.0;
     for (auto& [value, text] : candidates) {
-      value = evidenceFor(*text);
+      value = evidenceFor(*text) + format.logPrior(*text);
       if (value <= most) continue;
       most = value;
       result.text = *text;
