@@ -186,7 +186,7 @@ std::vector<ZoneMarker> ZoneMarkerTracker::takeTold() {
   for (Track& track : tracks_) {
     const std::size_t fresh = track.views.size() - track.told;
     if (fresh < static_cast<std::size_t>(options_.told_views)) continue;
-    if (track.text.best(format_).probability < options_.told_confidence) continue;
+    if (track.text.best().probability < options_.told_confidence) continue;
     const auto begin = track.views.begin() + static_cast<std::ptrdiff_t>(track.told);
     const Solution solution = solve(begin, track.views.end(), track.state, options_);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> spread(
