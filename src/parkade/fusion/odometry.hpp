@@ -17,7 +17,7 @@ struct OdometryNoiseOptions {
   double height = 0.002;
   double standing = 0.0005;
   double degraded_factor = 5.0;
-  double told_share = 0.5;
+  double told_share = 0.25;
 
   void visit(OptionVisitor& v) {
     v.field("translation", translation, "m/sqrt(m)", "Drift of the place, a random walk.", 1e-5,

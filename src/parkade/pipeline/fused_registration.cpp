@@ -81,10 +81,11 @@ void FusedMapper::Impl::tryStretch(const SemanticFrame& frame, const View& view,
     logDebug("registration to stretch {}: {}", stretch.anchor, fit.reason);
     return;
   }
-  // All registrations to a submap share its error: each is as unsure as if it were the only one
-  // of those that follow at this spacing.
-  const double uses = std::max(
-      1.0, (options.submaps.length_m + 5.0) / std::max(0.1, options.submaps.register_distance_m));
+  // All registrations to a submap share its error: together they may count it about once. Half the
+  // number of those that follow at this spacing, for they do not share all of it.
+  constexpr double kShared = 0.5;
+  const double uses = std::max(1.0, kShared * (options.submaps.length_m + 5.0) /
+                                        std::max(0.1, options.submaps.register_distance_m));
   Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
   shared.diagonal() << std::pow(options.submaps.sigma_m, 2), std::pow(options.submaps.sigma_m, 2),
       std::pow(options.submaps.sigma_deg * kDegree, 2);
