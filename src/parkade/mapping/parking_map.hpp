@@ -28,7 +28,7 @@ struct MapSlot {
   std::string number;             ///< painted number, empty where not read
   std::string zone;               ///< zone marker nearby, empty where not read
   double probability_free = 0.5;  ///< at last_seen_ns
-  std::int64_t observations = 0;
+  std::int64_t observations = 0;  ///< 0: told by its row (row_completion.hpp)
   TimeNs last_seen_ns = 0;
   bool operator==(const MapSlot&) const = default;
 };
