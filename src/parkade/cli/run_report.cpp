@@ -58,7 +58,7 @@ TextTable slotTable(const ParkingMap& map) {
                           figureText(slot.probability_free, 2), std::to_string(slot.observations),
                           figureText(entrance.x(), 2), figureText(entrance.y(), 2)});
   }
-  table.note = "x, y: middle of the entrance in the map's frame.";
+  table.note = "x, y: middle of the entrance in the map's frame. Seen 0 times: told by its row.";
   return table;
 }
 
