@@ -52,7 +52,7 @@ TextTable slotTable(const ParkingMap& map) {
   table.title = fmt::format("The map's {} slots", map.slots.size());
   table.header = {"id", "number", "zone", "availability", "P(free)", "seen", "x m", "y m"};
   for (const MapSlot& slot : map.slots) {
-    const Eigen::Vector2d entrance = 0.5 * (slot.corners[0] + slot.corners[1]);
+    const Eigen::Vector2d entrance = slot.entrance();
     table.rows.push_back({std::to_string(slot.id), slot.number, slot.zone,
                           availabilityText(slot.probability_free),
                           figureText(slot.probability_free, 2), std::to_string(slot.observations),

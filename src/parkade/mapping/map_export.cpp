@@ -216,7 +216,7 @@ Status exportLanelet2(const ParkingMap& map, const std::string& path) {
   for (const MapSlot& slot : map.slots) {
     const auto& c = slot.corners;
     all.insert(all.end(), c.begin(), c.end());
-    const Eigen::Vector2d entrance = 0.5 * (c[0] + c[1]);
+    const Eigen::Vector2d entrance = slot.entrance();
     const Eigen::Vector2d rear = 0.5 * (c[2] + c[3]);
     // The slot's extent across its own axis, so that slanted slots keep their area.
     const Eigen::Vector2d axis = (rear - entrance).normalized();

@@ -30,6 +30,8 @@ struct MapSlot {
   double probability_free = 0.5;  ///< at last_seen_ns
   std::int64_t observations = 0;  ///< 0: told by its row (row_completion.hpp)
   TimeNs last_seen_ns = 0;
+  /// Middle of the entrance.
+  [[nodiscard]] Eigen::Vector2d entrance() const { return 0.5 * (corners[0] + corners[1]); }
   bool operator==(const MapSlot&) const = default;
 };
 

@@ -23,10 +23,6 @@ struct Line {
 
 constexpr double kOnLine = 0.1;  // m
 
-Vector2d entranceMiddle(const MapSlot& slot) {
-  return 0.5 * (slot.corners[0] + slot.corners[1]);
-}
-
 bool liesOn(const MapSlot& slot, const Line& line) {
   return std::abs(line.off(slot.corners[0])) < kOnLine &&
          std::abs(line.off(slot.corners[1])) < kOnLine;
@@ -42,7 +38,7 @@ std::vector<const MapSlot*> neighboursOf(std::size_t i, const std::vector<MapSlo
   constexpr double kParallel = 0.9903;  // cosine of 8 degrees
   std::vector<const MapSlot*> found;
   for (std::size_t j = 0; j < slots.size(); ++j) {
-    if (j != i && (entranceMiddle(slots[j]) - entranceMiddle(slots[i])).norm() < kNear &&
+    if (j != i && (slots[j].entrance() - slots[i].entrance()).norm() < kNear &&
         inwardOf(slots[i]).dot(inwardOf(slots[j])) > kParallel) {
       found.push_back(&slots[j]);
     }
@@ -59,9 +55,9 @@ std::optional<Line> lineOf(const std::vector<const MapSlot*>& slots) {
   int most = 0;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     for (std::size_t j = i + 1; j < slots.size(); ++j) {
-      const Vector2d between = entranceMiddle(*slots[j]) - entranceMiddle(*slots[i]);
+      const Vector2d between = slots[j]->entrance() - slots[i]->entrance();
       if (between.norm() < kApart) continue;
-      const Line line{entranceMiddle(*slots[i]), between.normalized()};
+      const Line line{slots[i]->entrance(), between.normalized()};
       const auto on = std::count_if(slots.begin(), slots.end(),
                                     [&](const MapSlot* slot) { return liesOn(*slot, line); });
       if (on <= most) continue;
@@ -91,8 +87,8 @@ bool align(MapSlot& slot, const std::vector<const MapSlot*>& neighbours) {
   for (const MapSlot* other : neighbours) {
     if (!liesOn(*other, *line)) continue;
     depths.push_back((other->corners[3] - other->corners[0]).norm());
-    const double distance = (entranceMiddle(*other) - entranceMiddle(slot)).norm();
-    if (nearest == nullptr || distance < (entranceMiddle(*nearest) - entranceMiddle(slot)).norm())
+    const double distance = (other->entrance() - slot.entrance()).norm();
+    if (nearest == nullptr || distance < (nearest->entrance() - slot.entrance()).norm())
       nearest = other;
   }
   // Parallel slots between others keep their shape: they are deep as they are.

@@ -62,6 +62,10 @@ class Garage {
       }
     }
   }
+  void park(const MapSlot& slot) {
+    fill(GridLayer::kAvailability, SemanticClass::kVehicle, slot.corners[0] + Vector2d(0.3, 0.4),
+         slot.corners[2] - Vector2d(0.3, 0.4));
+  }
   void paintTold() {
     for (const MapSlot& slot : told) paint(slot);
   }
@@ -108,9 +112,7 @@ TEST(RowCompletion, TellsTheVehicleInIt) {
   Garage garage;
   garage.tell(0, {0, 2});
   garage.paintTold();
-  const MapSlot between = Garage::slotAt(0, 1);
-  garage.fill(GridLayer::kAvailability, SemanticClass::kVehicle,
-              between.corners[0] + Vector2d(0.3, 0.4), between.corners[2] - Vector2d(0.3, 0.4));
+  garage.park(Garage::slotAt(0, 1));
   const RowCompletion rows = garage.complete();
   ASSERT_EQ(rows.added.size(), 1U);
   EXPECT_LT(rows.added[0].probability_free, 0.2);
@@ -145,8 +147,7 @@ TEST(RowCompletion, BelievesABayBetweenTwoOthersSooner) {
     if (between) garage.tell(2, {0, 1, 2});
     garage.paintTold();
     MapSlot first = Garage::slotAt(1, 0);
-    garage.fill(GridLayer::kAvailability, SemanticClass::kVehicle,
-                first.corners[0] + Vector2d(0.3, 0.4), first.corners[2] - Vector2d(0.3, 0.4));
+    garage.park(first);
     for (double y = 0.5; y < 3.0; y += 0.05) {
       garage.fill(GridLayer::kParkingLines, SemanticClass::kSlotLine,
                   first.corners[1] + Vector2d(-0.05, y),
@@ -247,7 +248,7 @@ TEST(SlotRow, SlantedSlotsLeaveOtherMarginsBeforeThanAfter) {
   const std::vector<Vector2d> pillars = {{0.0 + 1.5, 2.0}, {8.0 + 1.5, 2.0}, {16.0 + 1.5, 2.0}};
   const std::vector<slot_rows::Row> rows = slot_rows::findRows(told);
   ASSERT_EQ(rows.size(), 1U);
-  const auto patterns = slot_rows::findPatterns(rows[0], rows, told, pillars);
+  const auto patterns = slot_rows::findPatterns(rows, told, pillars)[0];
   ASSERT_FALSE(patterns.empty());
   ASSERT_EQ(patterns[0].before.size(), 3U);
   EXPECT_NEAR(patterns[0].before[1].length, 1.0, 1e-9);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "parkade/mapping/slot_plausibility.hpp"
+
 namespace parkade::slot_rows {
 namespace {
 
@@ -78,12 +80,6 @@ class GridProbe {
   const LayeredGrid& grid_;
 };
 
-bool isForWhoDrives(SemanticClass c) {
-  return c == SemanticClass::kArrow || c == SemanticClass::kSpeedLimitPaint ||
-         c == SemanticClass::kStopLine || c == SemanticClass::kCrossing ||
-         c == SemanticClass::kSpeedBump;
-}
-
 bool stands(SemanticClass c) {
   return c == SemanticClass::kPillar || c == SemanticClass::kWall;
 }
@@ -107,7 +103,7 @@ void lookInside(const GridProbe& probe, const Corners& c, double step, SlotEvide
       floor += 1.0;
       if (probe.isSlotLine(p)) evidence.lines_inside += 1.0;
       if (probe.isLaneLine(p)) evidence.lanes_inside += 1.0;
-      if (isForWhoDrives(probe.at(GridLayer::kRoadMarkers, p))) evidence.markers_inside += 1.0;
+      if (isForDrivers(probe.at(GridLayer::kRoadMarkers, p))) evidence.markers_inside += 1.0;
     }
   }
   if (evidence.seen > 0.0) evidence.vehicle = vehicles / evidence.seen;

@@ -188,8 +188,10 @@ std::vector<Filling> findFillings(const std::vector<MapSlot>& told,
                                   const RowCompletionOptions& options) {
   std::vector<Filling> fillings;
   const std::vector<Row> rows = findRows(told);
-  for (const Row& row : rows) {
-    for (const Pattern& pattern : findPatterns(row, rows, told, pillars)) {
+  const std::vector<std::vector<Pattern>> patterns = findPatterns(rows, told, pillars);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Row& row = rows[i];
+    for (const Pattern& pattern : patterns[i]) {
       const GapFiller filler(told, row, pattern, grid, likelihood, options);
       for (const Gap& gap : findGaps(row, pattern, pillars, options.reach_m)) {
         Filling filling = filler.fill(gap);

@@ -27,13 +27,13 @@ bool meet(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2
          apart(cross(d - c, a - c), cross(d - c, b - c));
 }
 
+}  // namespace
+
 bool isForDrivers(SemanticClass c) {
   return c == SemanticClass::kArrow || c == SemanticClass::kSpeedLimitPaint ||
          c == SemanticClass::kStopLine || c == SemanticClass::kCrossing ||
          c == SemanticClass::kSpeedBump;
 }
-
-}  // namespace
 
 bool drivenThrough(const Corners& corners, const std::vector<Vector2d>& way) {
   const Corners inner = within(corners);

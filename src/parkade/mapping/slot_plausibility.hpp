@@ -17,8 +17,10 @@ namespace parkade {
 bool drivenThrough(const std::array<Eigen::Vector2d, 4>& corners,
                    const std::vector<Eigen::Vector2d>& way);
 
-/// Whether the middle of a marking for who drives lies in the slot, a fifth within: an arrow, a
-/// limit, a stop line, a crossing or a bump.
+/// An arrow, a limit, a stop line, a crossing or a bump: slots hold none.
+bool isForDrivers(SemanticClass c);
+
+/// Whether the middle of a marking for who drives lies in the slot, a fifth within.
 bool holdsRoadMarking(const std::array<Eigen::Vector2d, 4>& corners,
                       const std::vector<MapObject>& objects);
 

@@ -56,6 +56,11 @@ struct SlotRegistry::Impl {
   void forgetOdd();
   void mergeDuplicates();
   [[nodiscard]] std::vector<const Track*> distinct() const;
+  [[nodiscard]] std::vector<Eigen::Vector2d> drivenWay() const {
+    std::vector<Eigen::Vector2d> driven;
+    for (const Place& place : way) driven.push_back(place.p);
+    return driven;
+  }
   [[nodiscard]] bool isPlausible(const MapSlot& slot, const std::vector<MapObject>& objects,
                                  const std::vector<Eigen::Vector2d>& driven) const;
   [[nodiscard]] std::vector<MapSlot> seenSlots(TimeNs now_ns,
@@ -248,8 +253,7 @@ bool SlotRegistry::Impl::isPlausible(const MapSlot& slot, const std::vector<MapO
 
 std::vector<MapSlot> SlotRegistry::Impl::seenSlots(TimeNs now_ns,
                                                    const std::vector<MapObject>& objects) const {
-  std::vector<Eigen::Vector2d> driven;
-  for (const Place& place : way) driven.push_back(place.p);
+  const std::vector<Eigen::Vector2d> driven = drivenWay();
   std::vector<MapSlot> seen;
   for (const Track* track : distinct()) {
     if (std::find(replaced.begin(), replaced.end(), track->id) != replaced.end()) continue;
@@ -270,8 +274,7 @@ std::vector<MapSlot> SlotRegistry::Impl::seenSlots(TimeNs now_ns,
 void SlotRegistry::completeRows(TimeNs now_ns, const std::vector<MapObject>& objects,
                                 const LayeredGrid& grid) {
   Impl& m = *impl_;
-  std::vector<Eigen::Vector2d> driven;
-  for (const Impl::Place& place : m.way) driven.push_back(place.p);
+  const std::vector<Eigen::Vector2d> driven = m.drivenWay();
   const std::vector<MapSlot> before = std::exchange(m.of_rows, {});
   m.replaced.clear();
   RowCompletion rows =

@@ -22,17 +22,13 @@ Vector2d frontOf(const MapSlot& slot) {
   return slot.corners[1] - slot.corners[0];
 }
 
-Vector2d middleOf(const MapSlot& slot) {
-  return 0.5 * (slot.corners[0] + slot.corners[1]);
-}
-
 bool areInOneRow(const MapSlot& a, const MapSlot& b) {
   constexpr double kParallel = 0.9945;  // cosine of 6 degrees
   constexpr double kOff = 0.35;         // m
   constexpr double kApart = 14.0;       // m
   const Vector2d u = frontOf(a).normalized();
   const Vector2d v = frontOf(b).normalized();
-  const Vector2d between = middleOf(b) - middleOf(a);
+  const Vector2d between = b.entrance() - a.entrance();
   return u.dot(v) > kParallel && between.norm() < kApart &&
          std::abs(cross((u + v).normalized(), between)) < kOff;
 }
@@ -48,7 +44,7 @@ Row makeRow(const std::vector<MapSlot>& slots, const std::vector<std::size_t>& o
   };
   for (const std::size_t i : of_row) {
     const double w = weightOf(slots[i]);
-    mean += w * middleOf(slots[i]);
+    mean += w * slots[i].entrance();
     front += w * frontOf(slots[i]).normalized();
     weights += w;
   }
@@ -178,6 +174,40 @@ int countOf(const Row& row, SlotShape shape, const std::vector<MapSlot>& slots) 
                     [&](const Member& m) { return slots[m.slot].shape == shape; }));
 }
 
+// Those of the row's own shapes, most members first, then those of others; no margins yet.
+std::vector<Pattern> patternsOf(const Row& row, const std::vector<Row>& rows,
+                                const std::vector<MapSlot>& slots) {
+  std::vector<Pattern> patterns;
+  for (const SlotShape shape : kShapes) {
+    if (countOf(row, shape, slots) > 0) patterns.push_back(patternOf(row, shape, slots));
+  }
+  std::stable_sort(patterns.begin(), patterns.end(), [&](const Pattern& a, const Pattern& b) {
+    return countOf(row, a.shape, slots) > countOf(row, b.shape, slots);
+  });
+  for (const SlotShape shape : {SlotShape::kPerpendicular, SlotShape::kParallel}) {
+    const bool elsewhere = std::any_of(rows.begin(), rows.end(), [&](const Row& other) {
+      return countOf(other, shape, slots) > 0;
+    });
+    if (elsewhere && countOf(row, shape, slots) == 0) {
+      patterns.push_back(patternOfOthers(row, shape, rows, slots));
+    }
+  }
+  return patterns;
+}
+
+// A shape's own; those of all the others where it has none.
+std::vector<Margin> marginsOf(SlotShape shape, const std::array<Margins, kShapes.size()>& margins,
+                              std::vector<double> Margins::*side) {
+  std::vector<double> own;
+  std::vector<double> others;
+  for (std::size_t k = 0; k < kShapes.size(); ++k) {
+    const std::vector<double>& of_shape = margins[k].*side;
+    std::vector<double>& to = kShapes[k] == shape ? own : others;
+    to.insert(to.end(), of_shape.begin(), of_shape.end());
+  }
+  return countMargins(own.empty() ? std::move(others) : std::move(own));
+}
+
 }  // namespace
 
 std::vector<Row> findRows(const std::vector<MapSlot>& slots) {
@@ -208,40 +238,25 @@ double alongRow(const Row& row, const Pattern& pattern, const Vector2d& p) {
   return cross(p - row.origin, pattern.side) / cross(row.u, pattern.side);
 }
 
-std::vector<Pattern> findPatterns(const Row& row, const std::vector<Row>& rows,
-                                  const std::vector<MapSlot>& slots,
-                                  const std::vector<Vector2d>& pillars) {
-  std::vector<Pattern> patterns;
-  for (const SlotShape shape : kShapes) {
-    if (countOf(row, shape, slots) > 0) patterns.push_back(patternOf(row, shape, slots));
-  }
-  std::stable_sort(patterns.begin(), patterns.end(), [&](const Pattern& a, const Pattern& b) {
-    return countOf(row, a.shape, slots) > countOf(row, b.shape, slots);
-  });
-  for (const SlotShape shape : {SlotShape::kPerpendicular, SlotShape::kParallel}) {
-    const bool elsewhere = std::any_of(rows.begin(), rows.end(), [&](const Row& other) {
-      return countOf(other, shape, slots) > 0;
-    });
-    if (elsewhere && countOf(row, shape, slots) == 0) {
-      patterns.push_back(patternOfOthers(row, shape, rows, slots));
+std::vector<std::vector<Pattern>> findPatterns(const std::vector<Row>& rows,
+                                               const std::vector<MapSlot>& slots,
+                                               const std::vector<Vector2d>& pillars) {
+  std::array<Margins, kShapes.size()> margins;
+  for (const Row& row : rows) {
+    for (std::size_t k = 0; k < kShapes.size(); ++k) {
+      if (countOf(row, kShapes[k], slots) == 0) continue;
+      gatherMargins(row, patternOf(row, kShapes[k], slots), slots, pillars, margins[k]);
     }
   }
-  for (Pattern& pattern : patterns) {
-    Margins same;
-    Margins any;
-    for (const Row& other : rows) {
-      for (const SlotShape shape : kShapes) {
-        if (countOf(other, shape, slots) == 0) continue;
-        gatherMargins(other, patternOf(other, shape, slots), slots, pillars,
-                      shape == pattern.shape ? same : any);
-      }
+  std::vector<std::vector<Pattern>> of_rows;
+  for (const Row& row : rows) {
+    of_rows.push_back(patternsOf(row, rows, slots));
+    for (Pattern& pattern : of_rows.back()) {
+      pattern.before = marginsOf(pattern.shape, margins, &Margins::before);
+      pattern.after = marginsOf(pattern.shape, margins, &Margins::after);
     }
-    pattern.before = countMargins(std::move(same.before));
-    pattern.after = countMargins(std::move(same.after));
-    if (pattern.before.empty()) pattern.before = countMargins(std::move(any.before));
-    if (pattern.after.empty()) pattern.after = countMargins(std::move(any.after));
   }
-  return patterns;
+  return of_rows;
 }
 
 std::vector<Gap> findGaps(const Row& row, const Pattern& pattern,

@@ -63,12 +63,12 @@ struct Gap {
   GapEnd at_end = GapEnd::kSlot;
 };
 
-/// The patterns of a row's shapes, most members first, then those that other rows hold and that
-/// could stand in this one (slanted slots lean their own way). Their margins are those of all
+/// For each row the patterns of its shapes, most members first, then those that other rows hold and
+/// that could stand in this one (slanted slots lean their own way). Their margins are those of all
 /// rows with that shape, or of any if there are none.
-std::vector<Pattern> findPatterns(const Row& row, const std::vector<Row>& rows,
-                                  const std::vector<MapSlot>& slots,
-                                  const std::vector<Eigen::Vector2d>& pillars);
+std::vector<std::vector<Pattern>> findPatterns(const std::vector<Row>& rows,
+                                               const std::vector<MapSlot>& slots,
+                                               const std::vector<Eigen::Vector2d>& pillars);
 
 /// The gaps in a row for slots of this pattern, between members and pillars that stand in the row
 /// up to reach (m) beyond its ends; the first and the last one are open.
