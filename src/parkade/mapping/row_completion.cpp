@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "parkade/mapping/map_check.hpp"
 #include "parkade/mapping/row_alignment.hpp"
 #include "parkade/mapping/row_evidence.hpp"
 #include "parkade/mapping/row_filling.hpp"
+#include "parkade/mapping/row_splitting.hpp"
 #include "parkade/mapping/slot_likelihood.hpp"
 #include "parkade/mapping/slot_row.hpp"
 
@@ -30,7 +32,7 @@ std::vector<bool> findMisfits(const std::vector<MapSlot>& told) {
   for (const Row& row : slot_rows::findRows(told)) {
     for (const Member& a : row.members) {
       for (const Member& b : row.members) {
-        constexpr double kTouch = 0.3;  // m
+        constexpr double kTouch = 0.8;  // m, a pillar between
         const double apart = std::max(a.begin, b.begin) - std::min(a.end, b.end);
         if (apart < kTouch && told[a.slot].shape != told[b.slot].shape &&
             told[a.slot].observations < told[b.slot].observations) {
@@ -44,26 +46,32 @@ std::vector<bool> findMisfits(const std::vector<MapSlot>& told) {
 
 class RowCompleter {
  public:
-  RowCompleter(const std::vector<MapSlot>& told, const LayeredGrid& grid)
-      : told_(told), moved_(slot_rows::alignRows(told_)), gone_(told.size(), false) {
-    misfits_ = findMisfits(told_);
-    for (const MapSlot& slot : told_) {
-      evidence_.push_back(gatherEvidence(grid, slot.corners));
-      likelihood_.learn(evidence_.back());
+  RowCompleter(const std::vector<MapSlot>& told, const std::vector<Vector2d>& pillars,
+               const LayeredGrid& grid, const RowCompletionOptions& options)
+      : told_(told), pillars_(pillars), grid_(grid), options_(options) {
+    for (const std::size_t i : slot_rows::alignRows(told_)) moved_.insert(told_[i].id);
+    for (const MapSlot& slot : told_) likelihood_.learn(gatherEvidence(grid, slot.corners));
+    const std::vector<std::size_t> split =
+        slot_rows::splitSlots(told_, pillars, grid, likelihood_, options);
+    for (std::size_t k = split.size(); k-- > 0;) {
+      replaced_.push_back(told_[split[k]].id);
+      told_.erase(told_.begin() + static_cast<std::ptrdiff_t>(split[k]));
     }
+    gone_.assign(told_.size(), false);
+    misfits_ = findMisfits(told_);
+    for (const MapSlot& slot : told_) evidence_.push_back(gatherEvidence(grid, slot.corners));
   }
 
-  RowCompletion complete(const std::vector<Vector2d>& pillars, const LayeredGrid& grid,
-                         const RowCompletionOptions& options) {
+  RowCompletion complete() {
     std::vector<Filling> fillings =
-        slot_rows::findFillings(told_, pillars, grid, likelihood_, options);
+        slot_rows::findFillings(told_, pillars_, grid_, likelihood_, options_);
     if (std::find(misfits_.begin(), misfits_.end(), true) != misfits_.end()) {
       std::vector<MapSlot> fitting;
       for (std::size_t i = 0; i < told_.size(); ++i) {
         if (!misfits_[i]) fitting.push_back(told_[i]);
       }
       for (Filling& filling :
-           slot_rows::findFillings(fitting, pillars, grid, likelihood_, options)) {
+           slot_rows::findFillings(fitting, pillars_, grid_, likelihood_, options_)) {
         fillings.push_back(std::move(filling));
       }
     }
@@ -74,13 +82,12 @@ class RowCompleter {
       if (!takePlace(filling, result.added)) continue;
       result.added.insert(result.added.end(), filling.slots.begin(), filling.slots.end());
     }
-    for (const std::size_t i : moved_) {
-      if (gone_[i]) continue;
-      gone_[i] = true;
-      result.added.push_back(told_[i]);
-    }
+    result.replaced = replaced_;
     for (std::size_t i = 0; i < told_.size(); ++i) {
-      if (gone_[i]) result.replaced.push_back(told_[i].id);
+      const bool is_new = told_[i].id == 0;
+      const bool is_moved = moved_.count(told_[i].id) > 0;
+      if (!gone_[i] && (is_new || is_moved)) result.added.push_back(told_[i]);
+      if (!is_new && (gone_[i] || is_moved)) result.replaced.push_back(told_[i].id);
     }
     return result;
   }
@@ -119,8 +126,12 @@ class RowCompleter {
     return likelihood_.whole(evidence_[i]) + kPerLook * looks + (misfits_[i] ? kMisfit : 0.0);
   }
 
-  std::vector<MapSlot> told_;  // aligned
-  std::vector<std::size_t> moved_;
+  std::vector<MapSlot> told_;  // aligned and split; ids of 0: parts of what was told
+  const std::vector<Vector2d>& pillars_;
+  const LayeredGrid& grid_;
+  const RowCompletionOptions& options_;
+  std::set<std::int64_t> moved_;  // ids
+  std::vector<std::int64_t> replaced_;
   std::vector<bool> gone_;
   std::vector<bool> misfits_;
   std::vector<SlotEvidence> evidence_;
@@ -137,7 +148,7 @@ RowCompletion completeRows(const std::vector<MapSlot>& told, const std::vector<M
       pillars.push_back(object.position.head<2>());
     }
   }
-  return RowCompleter(told, grid).complete(pillars, grid, options);
+  return RowCompleter(told, pillars, grid, options).complete();
 }
 
 }  // namespace parkade

@@ -209,6 +209,55 @@ TEST(RowCompletion, ReplacesAMisfit) {
   expectAt(rows.added[1], Garage::slotAt(0, 2));
 }
 
+// The same far from any slot of its row: the other rows know how wide slots are.
+TEST(RowCompletion, SplitsTwoSlotsReadAsOne) {
+  enum class Case { kTwo, kShortSides, kLonger, kWall };
+  for (const Case which : {Case::kTwo, Case::kShortSides, Case::kLonger, Case::kWall}) {
+    Garage garage;
+    garage.tell(0, {0, 1, 2});
+    garage.paintTold();
+    MapSlot one = Garage::slotAt(3, 0);
+    one.id = 77;
+    one.shape = SlotShape::kParallel;
+    one.observations = 8;
+    const double length = which == Case::kLonger ? 6.0 : 2.0 * kWidth;
+    one.corners[1] = one.corners[0] + Vector2d(length, 0.0);
+    one.corners[2] = one.corners[1] + Vector2d(0.0, 2.3);
+    one.corners[3] = one.corners[0] + Vector2d(0.0, 2.3);
+    garage.told.push_back(one);
+    MapSlot painted = one;
+    if (which != Case::kShortSides) {
+      painted.corners[2].y() = painted.corners[3].y() = kDepth;
+    }
+    garage.paint(painted);
+    if (which == Case::kWall) {
+      garage.fill(GridLayer::kZoneMarkers, SemanticClass::kWall, one.corners[3],
+                  one.corners[2] + Vector2d(0.0, 0.4));
+    }
+    const RowCompletion rows = garage.complete();
+    if (which != Case::kTwo) {
+      EXPECT_TRUE(rows.replaced.empty());
+      continue;
+    }
+    EXPECT_EQ(rows.replaced, std::vector<std::int64_t>{77});
+    ASSERT_EQ(rows.added.size(), 2U);
+    expectAt(rows.added[0], Garage::slotAt(3, 0));
+    expectAt(rows.added[1], Garage::slotAt(3, 1));
+    EXPECT_EQ(rows.added[0].observations, 0);
+    EXPECT_EQ(rows.added[0].shape, SlotShape::kPerpendicular);
+  }
+}
+
+// A queue, or cars read too large, on a part of the row's line where nothing is painted.
+TEST(RowCompletion, VehiclesAloneMakeNoSlots) {
+  Garage garage;
+  garage.tell(0, {0, 1, 2});
+  garage.paintTold();
+  garage.fill(GridLayer::kAvailability, SemanticClass::kVehicle, {kBay + kMargin, 0.5},
+              {2.0 * kBay - kMargin, kDepth - 0.5});
+  EXPECT_TRUE(garage.complete().added.empty());
+}
+
 TEST(RowCompletion, MovesAnEntranceToItsRow) {
   Garage garage;
   garage.tell(0, {0, 1, 2});

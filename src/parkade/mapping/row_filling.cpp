@@ -130,6 +130,7 @@ class GapFiller {
     Filling filling;
     SlotEvidence::Line entrance;
     double known = 0.0;
+    double vehicles = 0.0;
     for (std::size_t i = 0; i < places.size(); ++i) {
       const SlotEvidence& e = places[i].evidence;
       if (isDenied(e)) return {};
@@ -137,7 +138,7 @@ class GapFiller {
       (i == 0 && after_slot ? known : filling.merit) += likelihood_.side(e.left);
       if (i + 1 == places.size())
         (before_slot ? known : filling.merit) += likelihood_.side(e.right);
-      filling.merit += SlotLikelihood::vehicle(e);
+      vehicles += SlotLikelihood::vehicle(e);
       entrance.painted += e.entrance.contrast() * e.entrance.seen_m;
       entrance.seen_m += e.entrance.seen_m;
       filling.slots.push_back(places[i].slot);
@@ -145,6 +146,9 @@ class GapFiller {
     // Slots of other shapes have their entrances there as well: they count once.
     if (entrance.seen_m > 0.0) entrance.painted /= entrance.seen_m;
     filling.merit += likelihood_.entrance(entrance);
+    // Cars that wait or were read too large cover several places at once.
+    constexpr double kOneCar = 2.4;
+    filling.merit += after_slot && before_slot ? vehicles : std::min(vehicles, kOneCar);
     filling.log_odds = prior + filling.merit;
     filling.merit = filling.log_odds + known;
     return filling.log_odds > options_.min_log_odds ? filling : Filling{};
@@ -164,11 +168,7 @@ class GapFiller {
         });
     slot.last_seen_ns = told_[nearest.slot].last_seen_ns;
     slot.corner_sigma = std::max(options_.corner_sigma_m, told_[nearest.slot].corner_sigma);
-    constexpr double kSeen = 0.15;  // of the slot
-    constexpr double kVehicle = 0.2;
-    if (place.evidence.seen > kSeen) {
-      slot.probability_free = place.evidence.vehicle > kVehicle ? 0.1 : 0.9;
-    }
+    setFree(place.evidence, slot);
     return place;
   }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "parkade/mapping/parking_map.hpp"
 #include "parkade/mapping/row_evidence.hpp"
 
 namespace parkade::slot_rows {
@@ -33,5 +34,9 @@ class SlotLikelihood {
 /// Whether the layers deny a slot: markings for who drives, lane lines, other lines or something
 /// that stands in it.
 bool isDenied(const SlotEvidence& evidence);
+
+/// Free or occupied, by the vehicles that the layers show in it; untouched where too little is
+/// seen.
+void setFree(const SlotEvidence& evidence, MapSlot& slot);
 
 }  // namespace parkade::slot_rows
