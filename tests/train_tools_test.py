@@ -88,6 +88,36 @@ class LossTest(unittest.TestCase):
         self.assertEqual(list(before.shape), [2, 28, 32, 48])
         self.assertLess(float((before - after).abs().max()), 1e-4)
 
+    def test_warm_start_from_an_exported_network(self):
+        """What is loaded computes what the file computes, before batch norms settle and after."""
+        import numpy as np
+        import onnx
+        from network import fold_batch_norm, make_network, to_input
+        from warm_start import load, settle
+
+        model = str(SOURCE / "models" / "view_segmentation.onnx")
+        rng = np.random.default_rng(3)
+        pictures = to_input(rng.integers(0, 255, (4, 96, 160, 3)).astype(np.uint8))
+        network = make_network("raw", 7)
+        network.load_state_dict(load(model, network))
+        with torch.no_grad():
+            before = network.eval()(pictures)
+            settle(network, [pictures])
+            in_training = network.train()(pictures)
+            settled = network.eval()(pictures)
+        self.assertGreater(float(before.std()), 0.5)
+        tolerance = 1e-3 * float(before.abs().max())
+        self.assertLess(float((settled - before).abs().max()), tolerance)
+        # The same batch that the batch norms settled on: training sees the very same numbers.
+        self.assertLess(float((in_training - before).abs().max()), tolerance)
+        weights = fold_batch_norm(network).state_dict()
+        for value in onnx.load(model).graph.initializer:
+            stored = torch.from_numpy(onnx.numpy_helper.to_array(value).copy())
+            self.assertLess(float((weights[value.name] - stored).abs().max()),
+                            1e-3 * float(stored.abs().max()), value.name)
+        with self.assertRaises(SystemExit):
+            load(str(SOURCE / "models" / "zone_text.onnx"), network)
+
 
 if __name__ == "__main__":
     unittest.main()

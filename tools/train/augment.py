@@ -115,7 +115,7 @@ def augment(rng, image, labels, floor_channel=None, line_channel=None):
     image = image.astype(np.float32)
     shape = labels.shape
     black = image.sum(2, keepdims=True) < 1.0
-    if line_channel is not None and rng.random() < 0.3:
+    if line_channel is not None and rng.random() < 0.45:
         image = repaint(rng, image, labels, floor_channel, line_channel)
     if rng.random() < 0.3:  # nearly as it was drawn
         image = image * np.exp(rng.normal(0, 0.15)) + rng.normal(0, 2, shape + (1,))

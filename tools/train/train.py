@@ -6,7 +6,7 @@
     tools/train/train.py --data DATA --network bev --out RUN --steps 10000
 
 Writes RUN/state.pt every few minutes: the same command goes on from there. --warm-start FILE begins
-with the weights of another run. Samples that appear during training are taken in. Garages whose seed
+with the weights of another run, or of a network that was exported. Samples that appear during training are taken in. Garages whose seed
 ends in 3 are kept for validation.
 """
 import argparse
@@ -27,6 +27,7 @@ from classes import IGNORE, NETWORKS  # noqa: E402
 from dataset import Samples, cut  # noqa: E402
 from network import full_size, grown, make_network, to_input  # noqa: E402
 from scores import Confusion, table  # noqa: E402
+from warm_start import load, settle  # noqa: E402
 
 
 def is_validation(garage):
@@ -176,7 +177,7 @@ def main():
     parser.add_argument("--bfloat16", action="store_true",
                         help="half precision: twice as fast on processors that have it (avx512_bf16)")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--warm-start", help="a state.pt whose weights to begin with")
+    parser.add_argument("--warm-start", help="a state.pt or an exported .onnx whose weights to begin with")
     a = parser.parse_args()
     os.makedirs(a.out, exist_ok=True)
     torch.set_num_threads(a.threads)
@@ -196,8 +197,12 @@ def main():
         optimiser.load_state_dict(state["optimiser"])
         average.state, step, spent = state["average"], state["step"], state["spent"]
     elif a.warm_start:
-        before = torch.load(a.warm_start)["average"]
-        network.load_state_dict(grown(before, network.state_dict()))
+        network.load_state_dict(grown(load(a.warm_start, network), network.state_dict()))
+        if a.warm_start.endswith(".onnx"):
+            rng = np.random.default_rng(a.seed)
+            samples = Samples(a.data, a.network, lambda garage: not is_validation(garage))
+            settle(network, [to_input(make_batch(samples, rng, a.batch, size, a.network)[0])
+                             for _ in range(16)])
         average = Average(network, 0.998)
     log = open(os.path.join(a.out, "log.txt"), "a", buffering=1)
 

@@ -21,6 +21,7 @@ import torch  # noqa: E402
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from text_data import Crops, augmented, fonts, rendered  # noqa: E402
 from text_network import TextNetwork, column_loss, read, sequence_loss, to_input  # noqa: E402
+from warm_start import load, settle  # noqa: E402
 
 
 def is_validation(garage):
@@ -80,14 +81,14 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", help="folder of make_data.py")
     parser.add_argument("--out", help="folder for text.pt")
-    parser.add_argument("--check", help="only score this state")
+    parser.add_argument("--check", help="only score this text.pt or exported .onnx")
     parser.add_argument("--steps", type=int, default=3000)
     parser.add_argument("--batch", type=int, default=48)
     parser.add_argument("--rate", type=float, default=3e-3)
     parser.add_argument("--rendered", type=int, default=12000, help="rendered faces [12000]")
     parser.add_argument("--columns-only", type=int, default=400,
                         help="steps on rendered faces alone at first [400]")
-    parser.add_argument("--warm-start", help="begin with the weights of another text.pt")
+    parser.add_argument("--warm-start", help="begin with the weights of another text.pt or of an exported .onnx")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--threads", type=int, default=1)
     a = parser.parse_args()
@@ -96,11 +97,14 @@ def main():
     rng = np.random.default_rng(a.seed)
     network = TextNetwork()
     if a.warm_start:
-        network.load_state_dict(torch.load(a.warm_start)["average"])
+        network.load_state_dict(load(a.warm_start, network))
+        if a.warm_start.endswith(".onnx"):
+            faces = [patch for patch, _, _ in render_many(rng, 512)]
+            settle(network, [to_input(np.stack(faces))])
     held_back = Crops(a.data or "", is_validation)
     drawn_check = render_many(np.random.default_rng(a.seed + 1000), 1000)
     if a.check:
-        network.load_state_dict(torch.load(a.check)["average"])
+        network.load_state_dict(load(a.check, network))
         print(report(network.eval(), held_back, drawn_check))
         return
     os.makedirs(a.out, exist_ok=True)
