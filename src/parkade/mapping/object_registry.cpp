@@ -267,6 +267,12 @@ std::vector<MapObject> ObjectRegistry::objects() const {
   }
   std::stable_sort(told.begin(), told.end(),
                    [](const Track* a, const Track* b) { return a->id < b->id; });
+  TextFormat format;
+  for (const Track* track : told) {
+    if (track->semantic_class != SemanticClass::kZoneMarker) continue;
+    const std::string text = track->texts.best();
+    if (!text.empty()) format.add(text);
+  }
   std::vector<MapObject> result;
   for (const Track* one : told) {
     const Track& track = *one;
@@ -277,7 +283,8 @@ std::vector<MapObject> ObjectRegistry::objects() const {
     object.heading =
         track.heading.norm() > 0.0 ? std::atan2(track.heading.y(), track.heading.x()) : 0.0;
     object.position_sigma = std::sqrt(std::max(0.0, track.covariance.trace() / 3.0));
-    object.text = track.texts.best();
+    object.text = track.semantic_class == SemanticClass::kZoneMarker ? track.texts.best(format)
+                                                                     : track.texts.best();
     object.outline = track.outline;
     object.observations = track.observations;
     result.push_back(std::move(object));

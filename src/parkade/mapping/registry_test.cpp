@@ -473,6 +473,22 @@ TEST(LabelSight, SharesOfAnArea) {
   EXPECT_NEAR(sight.of({}, SemanticClass::kStopLine).unseen, 1.0, 1e-9);
 }
 
+TEST(Votes, MarkersAreCalledAlike) {
+  Votes votes;
+  votes.add("106", 2.0);
+  votes.add("10G", 0.9);
+  Votes alone;
+  alone.add("116", 1.0);
+  TextFormat format;
+  for (int i = 0; i < 3; ++i) format.add(std::to_string(i) + "G");
+  EXPECT_EQ(votes.best(format), "106");  // three markers are no scheme
+  for (int i = 3; i < 8; ++i) format.add(std::to_string(i) + "G");
+  format.add("106");
+  EXPECT_EQ(votes.best(), "106");
+  EXPECT_EQ(votes.best(format), "10G");
+  EXPECT_EQ(alone.best(format), "");
+}
+
 TEST(Votes, GateIsTheChiSquareOfFourDegrees) {
   EXPECT_NEAR(chiSquareGate4(0.95), 9.488, 1e-3);
   EXPECT_NEAR(chiSquareGate4(0.999), 18.467, 1e-3);

@@ -6,6 +6,8 @@
 #include <map>
 #include <string>
 
+#include "parkade/types/text_format.hpp"
+
 namespace parkade {
 
 /// Which of several readings of a text is right: the one with the most weight.
@@ -27,6 +29,15 @@ class Votes {
       text = candidate;
     }
     return text;
+  }
+  /// The same of a zone marker's text, where others tell how such texts are made up: what is called
+  /// otherwise than they are gives way to any other, and is not told.
+  [[nodiscard]] std::string best(const TextFormat& format) const {
+    Votes fitting;
+    for (const auto& [candidate, weight] : weights_) {
+      if (!format.isStray(candidate)) fitting.add(candidate, weight);
+    }
+    return fitting.best();
   }
 
  private:

@@ -27,7 +27,8 @@ struct Search {
 struct Blob {
   std::vector<cv::Point> pixels;
   cv::Rect box;
-  int covered = 0;  ///< pixels beside something that may hide a part
+  int covered = 0;        ///< pixels beside something that may hide a part
+  int covered_aside = 0;  ///< of these, left or right of one
 };
 
 bool mayHide(std::uint8_t label) {
@@ -55,14 +56,16 @@ std::vector<Blob> findBlobs(const cv::Mat& labels, const cv::Mat& mask, Semantic
         blob.pixels.emplace_back(u, v);
         for (const cv::Point& step : {cv::Point(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
           const cv::Point next = cv::Point(u, v) + step;
-          if (!inside.contains(next)) {
-            ++blob.covered;
-            continue;
+          bool covered = !inside.contains(next);
+          if (!covered) {
+            const bool own_car =
+                !mask.empty() && mask.at<std::uint8_t>(next.y * mask.rows / labels.rows,
+                                                       next.x * mask.cols / labels.cols) == 0;
+            covered = own_car || mayHide(labels.at<std::uint8_t>(next));
           }
-          const bool own_car =
-              !mask.empty() && mask.at<std::uint8_t>(next.y * mask.rows / labels.rows,
-                                                     next.x * mask.cols / labels.cols) == 0;
-          blob.covered += own_car || mayHide(labels.at<std::uint8_t>(next)) ? 1 : 0;
+          if (!covered) continue;
+          ++blob.covered;
+          blob.covered_aside += step.x != 0 ? 1 : 0;
         }
       }
     }
@@ -181,7 +184,14 @@ std::optional<MeasuredSight> measure(const Blob& blob, const LabelScale& labels,
   sight.height_ratio = marker.height_at_middle / std::hypot(1.0, x);
   sight.height_sigma = 0.5 * pixel.y();
   constexpr double kCovered = 0.08;  // of the outline
-  sight.cut = blob.covered > kCovered * 2.0 * (box.width + box.height);
+  const double around = 2.0 * (box.width + box.height);
+  sight.cut = blob.covered > kCovered * around;
+  if (sight.cut) {
+    // Its middle lies somewhere in what is hidden, and it is higher than it looks.
+    sight.sigma = std::hypot(sight.sigma, 0.5 * marker.height_at_middle);
+    sight.height_sigma = sight.height_ratio;
+  }
+  sight.legible = blob.covered_aside <= kCovered * around;
   return MeasuredSight{sight, view, marker};
 }
 
@@ -212,7 +222,7 @@ std::vector<ZoneMarkerSight> find(const cv::Mat& labels, const cv::Mat& image, c
     std::optional<MeasuredSight> found = measure(blob, scale, camera, R_level_cam, search.corners);
     if (!found) continue;
     for (const FittedFace& face : found->marker.faces) {
-      if (found->sight.cut || !search.straightened || faces >= options.max_faces) break;
+      if (!found->sight.legible || !search.straightened || faces >= options.max_faces) break;
       if (face.slant() > options.max_slant_deg * M_PI / 180.0) continue;
       ZoneMarkerFace straight = straighten(image, found->view, middleOf(face, search.share),
                                            found->marker.middle / search.share);

@@ -52,6 +52,7 @@ struct ZoneMarkerSight {
   double height_ratio = 0.0;  ///< the marker's height over its horizontal distance
   double height_sigma = 0.0;  ///< of that ratio
   bool cut = false;           ///< by the picture's border or the own car, or covered by a car
+  bool legible = false;       ///< not cut at its sides: its text may be whole
   cv::Rect box;               ///< in the label picture
   std::vector<ZoneMarkerFace> faces;  ///< from left to right; those that can be read
 };

@@ -170,7 +170,7 @@ void ZoneMarkerTracker::add(const std::vector<ZoneMarkerView>& views, TimeNs t_n
     extend(tracks_[pair.track], views[pair.view], t_ns);
   }
   for (std::size_t j = 0; j < views.size(); ++j) {
-    if (!view_used[j] && views[j].height_ratio > 0.0) start(views[j], t_ns);
+    if (!view_used[j] && views[j].whole && views[j].height_ratio > 0.0) start(views[j], t_ns);
   }
   std::erase_if(tracks_, [&](const Track& track) {
     if (toSeconds(t_ns - track.seen_ns) <= options_.forget_s) return false;

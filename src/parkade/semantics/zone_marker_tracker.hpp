@@ -51,6 +51,7 @@ struct ZoneMarkerView {
   double height_ratio = 0.0;  ///< the marker's height over its horizontal distance
   double height_sigma = 0.0;
   std::vector<std::vector<TextReading>> readings;  ///< of each face that was read, best first
+  bool whole = true;  ///< or cut: belongs to a marker that is followed already, or to none
 };
 
 /// A marker placed by several views, since it was told last.

@@ -141,6 +141,13 @@ TEST(TextFormat, OtherMarkersTellHowOneIsMadeUp) {
   EXPECT_EQ(evidence.best(format).text, "5H5");
   for (int i = 0; i < 8; ++i) format.add(std::to_string(i + 3) + "K");
   EXPECT_EQ(evidence.best(format).text, "5H");
+  // As often as "6K" may be read as "66": those who read it knew no better.
+  TextEvidence misread;
+  for (int i = 0; i < 2; ++i) misread.add({{"66", 0.7}, {"6K", 0.2}});
+  EXPECT_EQ(misread.best().text, "66");
+  EXPECT_EQ(misread.best(format).text, "6K");
+  EXPECT_TRUE(format.isStray("66"));
+  EXPECT_FALSE(format.isStray("66K"));
   // Many clear readings stand against it.
   for (int i = 0; i < 4; ++i) evidence.add({{"5H5", 0.95}});
   EXPECT_EQ(evidence.best(format).text, "5H5");

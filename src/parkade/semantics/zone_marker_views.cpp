@@ -11,9 +11,10 @@ Result<std::vector<ZoneMarkerView>> viewsOf(const std::vector<ZoneMarkerSight>& 
                                             const std::string& only) {
   std::vector<ZoneMarkerView> views;
   for (const ZoneMarkerSight& sight : sights) {
-    if (sight.cut) continue;  // its middle is not seen
+    // Where the middle is not seen a view places nothing, but may be read.
+    if (sight.cut && (reader == nullptr || sight.faces.empty())) continue;
     ZoneMarkerView view{eye, sight.ray_level, sight.sigma, sight.height_ratio, sight.height_sigma,
-                        {}};
+                        {},  !sight.cut};
     for (const ZoneMarkerFace& face : sight.faces) {
       if (reader == nullptr) break;
       Result<std::vector<TextReading>> readings = reader->read(face.patch, only);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -15,16 +16,22 @@ class TextFormat {
  public:
   /// A marker's text that is sure; each marker once.
   void add(const std::string& text) {
-    ++counts_[patternOf(text)];
+    most_ = std::max(most_, ++counts_[patternOf(text)]);
     ++all_;
   }
 
   /// Logarithm of how much likelier a text is for its pattern than for that of all markers so far;
-  /// 0 where no marker is known.
+  /// 0 where no marker is known. Once most of several markers are alike, what differs from them was
+  /// probably misread, as often as it may be.
   [[nodiscard]] double logPrior(const std::string& text) const {
-    const auto it = counts_.find(patternOf(text));
-    const int same = it == counts_.end() ? 0 : it->second;
+    const int same = countOf(patternOf(text));
+    if (hasScheme()) return same == most_ ? 0.0 : kStray;
     return std::log((same + kUnseen) / (all_ + kUnseen));
+  }
+
+  /// Whether nearly all markers are called otherwise.
+  [[nodiscard]] bool isStray(const std::string& text) const {
+    return hasScheme() && countOf(patternOf(text)) < most_;
   }
 
   /// "A0" of "B12", "0A" of "7K", "A-0" of "C-3": runs of digits count once.
@@ -40,8 +47,19 @@ class TextFormat {
 
  private:
   static constexpr double kUnseen = 0.1;  ///< markers: weight of a pattern that none has
+  static constexpr int kSeveral = 6;      ///< markers
+  static constexpr double kMost = 0.6;    ///< of them
+  static constexpr double kStray = -8.0;
+
+  [[nodiscard]] int countOf(const std::string& pattern) const {
+    const auto it = counts_.find(pattern);
+    return it == counts_.end() ? 0 : it->second;
+  }
+  [[nodiscard]] bool hasScheme() const { return all_ >= kSeveral && most_ >= kMost * all_; }
+
   std::map<std::string, int> counts_;
   int all_ = 0;
+  int most_ = 0;  ///< of one pattern
 };
 
 }  // namespace parkade
