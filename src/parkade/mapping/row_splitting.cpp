@@ -40,7 +40,7 @@ class SlotSplitter {
       if (isDenied(evidence.back())) return {};
     }
     const double log_odds = lengthLogOdds(rest) + betweenLogOdds(evidence) +
-                            beyondLogOdds(row, member, pattern, depth_told);
+                            beyondLogOdds(row, member, pattern, depth_told) + rearLogOdds(slot);
     if (log_odds < options_.min_log_odds) return {};
     for (int i = 0; i < count; ++i) setFree(evidence[static_cast<std::size_t>(i)], parts[i]);
     return parts;
@@ -90,6 +90,14 @@ class SlotSplitter {
     const SlotEvidence beyond = gatherEvidence(grid_, {left, right, right + deep, left + deep});
     if (beyond.structure_inside > kStructure) return kDenied;
     return likelihood_.side(beyond.left) + likelihood_.side(beyond.right);
+  }
+
+  // A line along the rear of what was told would cross the parts: a slot into another row, read
+  // from its side, has one.
+  [[nodiscard]] double rearLogOdds(const MapSlot& slot) const {
+    const auto& c = slot.corners;
+    const SlotEvidence turned = gatherEvidence(grid_, {c[3], c[2], c[1], c[0]});
+    return -std::max(0.0, likelihood_.entrance(turned.entrance));
   }
 
   [[nodiscard]] MapSlot partOf(const MapSlot& slot, const Pattern& pattern, const Vector2d& left,

@@ -176,7 +176,23 @@ TEST_F(PillarScene, SmallLabelPicturesDo) {
   EXPECT_FALSE(sights[0].faces.empty());
 }
 
-TEST_F(PillarScene, WhatIsCutIsNotRead) {
+TEST_F(PillarScene, WhatIsCutAboveIsReadButPlacesLittle) {
+  draw(4.0, 35.0 * kDegree);
+  const auto whole = findZoneMarkers(labels_, image_, {}, camera_, R_level_cam_, {});
+  const cv::Rect box = cv::boundingRect(labels_);
+  cv::Mat mask(400, 640, CV_8UC1, cv::Scalar(255));
+  mask(cv::Rect(0, 0, 640, box.y + box.height / 5)).setTo(0);
+  labels_.setTo(0, mask == 0);
+  const auto sights = findZoneMarkers(labels_, image_, mask, camera_, R_level_cam_, {});
+  ASSERT_EQ(whole.size(), 1U);
+  ASSERT_EQ(sights.size(), 1U);
+  EXPECT_TRUE(sights[0].cut);
+  EXPECT_EQ(sights[0].faces.size(), whole[0].faces.size());
+  EXPECT_GT(sights[0].sigma, 10.0 * whole[0].sigma);
+  EXPECT_GT(sights[0].height_sigma, 10.0 * whole[0].height_sigma);
+}
+
+TEST_F(PillarScene, WhatIsCutAsideIsNotRead) {
   draw(4.0, 35.0 * kDegree);
   const cv::Rect box = cv::boundingRect(labels_);
   cv::Mat mask(400, 640, CV_8UC1, cv::Scalar(255));

@@ -153,6 +153,36 @@ TEST(TextFormat, OtherMarkersTellHowOneIsMadeUp) {
   EXPECT_EQ(evidence.best(format).text, "5H5");
 }
 
+TEST(ZoneMarkerTracker, ACutViewBelongsToAMarkerThatIsFollowed) {
+  const ZoneMarkerTrackerOptions options;
+  ZoneMarkerTracker tracker(options);
+  const Eigen::Vector3d marker(5.0, 3.0, 1.7);
+  const auto eyeAt = [&](int k) -> Eigen::Vector3d {
+    return marker + Eigen::Vector3d(0.5 * k - 4.0, -3.0, -0.8);
+  };
+  ZoneMarkerView cut = viewOf(marker, options.height_m, eyeAt(0), nullptr);
+  cut.whole = false;
+  cut.sigma = 0.1;
+  cut.height_sigma = cut.height_ratio;
+  cut.readings = says("B7", 0.99);
+  tracker.add({cut}, 0);
+  EXPECT_TRUE(tracker.followed().empty());
+  for (int k = 1; k < 8; ++k) {
+    tracker.add({viewOf(marker, options.height_m, eyeAt(k), nullptr)}, k * TimeNs{100000000});
+  }
+  const Eigen::Vector3d before = tracker.followed().at(0).position;
+  cut = viewOf(marker, options.height_m, eyeAt(8), nullptr);
+  cut.whole = false;
+  cut.sigma = 0.1;
+  cut.height_ratio *= 0.7;  // the top is hidden
+  cut.height_sigma = cut.height_ratio;
+  cut.readings = says("B7", 0.99);
+  tracker.add({cut}, 900'000'000);
+  ASSERT_EQ(tracker.followed().size(), 1U);
+  EXPECT_EQ(tracker.followed()[0].text, "B7");
+  EXPECT_LT((tracker.followed()[0].position - before).norm(), 0.02);
+}
+
 TEST(ZoneMarkerTracker, LearnsHowMarkersAreCalled) {
   ZoneMarkerTrackerOptions options;
   options.forget_s = 1.0;
