@@ -209,12 +209,13 @@ TEST(RowCompletion, ReplacesAMisfit) {
   expectAt(rows.added[1], Garage::slotAt(0, 2));
 }
 
-// The same far from any slot of its row: the other rows know how wide slots are.
+// The same far from the slots of its row that were read rightly.
 TEST(RowCompletion, SplitsTwoSlotsReadAsOne) {
-  enum class Case { kTwo, kShortSides, kLonger, kWall };
-  for (const Case which : {Case::kTwo, Case::kShortSides, Case::kLonger, Case::kWall}) {
+  enum class Case { kTwo, kShortSides, kLonger, kWall, kRear, kNoneKnown };
+  for (const Case which :
+       {Case::kTwo, Case::kShortSides, Case::kLonger, Case::kWall, Case::kRear, Case::kNoneKnown}) {
     Garage garage;
-    garage.tell(0, {0, 1, 2});
+    if (which != Case::kNoneKnown) garage.tell(1, {0, 1, 2});
     garage.paintTold();
     MapSlot one = Garage::slotAt(3, 0);
     one.id = 77;
@@ -230,6 +231,12 @@ TEST(RowCompletion, SplitsTwoSlotsReadAsOne) {
       painted.corners[2].y() = painted.corners[3].y() = kDepth;
     }
     garage.paint(painted);
+    if (which == Case::kRear) {
+      std::swap(painted.corners[0], painted.corners[3]);
+      std::swap(painted.corners[1], painted.corners[2]);
+      painted.corners[0].y() = painted.corners[1].y() = one.corners[3].y();
+      garage.paint(painted);
+    }
     if (which == Case::kWall) {
       garage.fill(GridLayer::kZoneMarkers, SemanticClass::kWall, one.corners[3],
                   one.corners[2] + Vector2d(0.0, 0.4));

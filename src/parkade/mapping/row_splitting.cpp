@@ -27,7 +27,8 @@ class SlotSplitter {
     const double rest = length - count * pattern.front;
     const double depth = pattern.side.norm();
     const double depth_told = (slot.corners[3] - slot.corners[0]).norm();
-    if (count < 2 || std::abs(rest) > options_.fit_m || depth < depth_told + kLeastBeyond) {
+    if (count < 2 || std::abs(rest) > options_.fit_m || depth < depth_told + kLeastBeyond ||
+        hasRearLine(slot)) {
       return {};
     }
     std::vector<MapSlot> parts;
@@ -40,7 +41,7 @@ class SlotSplitter {
       if (isDenied(evidence.back())) return {};
     }
     const double log_odds = lengthLogOdds(rest) + betweenLogOdds(evidence) +
-                            beyondLogOdds(row, member, pattern, depth_told) + rearLogOdds(slot);
+                            beyondLogOdds(row, member, pattern, depth_told);
     if (log_odds < options_.min_log_odds) return {};
     for (int i = 0; i < count; ++i) setFree(evidence[static_cast<std::size_t>(i)], parts[i]);
     return parts;
@@ -94,10 +95,9 @@ class SlotSplitter {
 
   // A line along the rear of what was told would cross the parts: a slot into another row, read
   // from its side, has one.
-  [[nodiscard]] double rearLogOdds(const MapSlot& slot) const {
+  [[nodiscard]] bool hasRearLine(const MapSlot& slot) const {
     const auto& c = slot.corners;
-    const SlotEvidence turned = gatherEvidence(grid_, {c[3], c[2], c[1], c[0]});
-    return -std::max(0.0, likelihood_.entrance(turned.entrance));
+    return likelihood_.entrance(gatherEvidence(grid_, {c[3], c[2], c[1], c[0]}).entrance) > 0.0;
   }
 
   [[nodiscard]] MapSlot partOf(const MapSlot& slot, const Pattern& pattern, const Vector2d& left,
@@ -130,7 +130,7 @@ std::vector<std::size_t> splitSlots(std::vector<MapSlot>& slots,
       const MapSlot slot = slots[member.slot];
       if (slot.shape != SlotShape::kParallel) continue;
       for (const Pattern& pattern : patterns[r]) {
-        if (pattern.shape != SlotShape::kPerpendicular) continue;
+        if (pattern.shape != SlotShape::kPerpendicular || !pattern.of_row) continue;
         const std::vector<MapSlot> parts = splitter.split(rows[r], member, slot, pattern);
         if (parts.empty()) continue;
         slots.insert(slots.end(), parts.begin(), parts.end());

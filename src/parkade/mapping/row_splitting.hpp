@@ -15,7 +15,7 @@
 namespace parkade::slot_rows {
 
 /// Two slots (or more) with no line to be seen between them are easily read as one along the aisle.
-/// Where such a one is as long as whole slots of the garage are wide, and the layers do not speak
+/// Where such a one is as long as whole slots of its row are wide, and the layers do not speak
 /// for it (docs/math/slots.md, equation 6), these are appended to slots, with no observations of
 /// their own and without an id. Returns the indices of the slots that they stand for, which stay.
 std::vector<std::size_t> splitSlots(std::vector<MapSlot>& slots,
