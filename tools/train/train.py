@@ -6,8 +6,8 @@
     tools/train/train.py --data DATA --network bev --out RUN --steps 10000
 
 Writes RUN/state.pt every few minutes: the same command goes on from there. --warm-start FILE begins
-with the weights of another run, or of a network that was exported. Samples that appear during training are taken in. Garages whose seed
-ends in 3 are kept for validation.
+with the weights of another run, or of a network that was exported. Samples that appear during
+training are taken in. Garages whose seed ends in 3 are kept for validation.
 """
 import argparse
 import multiprocessing
@@ -177,7 +177,8 @@ def main():
     parser.add_argument("--bfloat16", action="store_true",
                         help="half precision: twice as fast on processors that have it (avx512_bf16)")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--warm-start", help="a state.pt or an exported .onnx whose weights to begin with")
+    parser.add_argument("--warm-start",
+                        help="a state.pt or an exported .onnx whose weights to begin with")
     a = parser.parse_args()
     os.makedirs(a.out, exist_ok=True)
     torch.set_num_threads(a.threads)

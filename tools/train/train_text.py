@@ -88,7 +88,8 @@ def main():
     parser.add_argument("--rendered", type=int, default=12000, help="rendered faces [12000]")
     parser.add_argument("--columns-only", type=int, default=400,
                         help="steps on rendered faces alone at first [400]")
-    parser.add_argument("--warm-start", help="begin with the weights of another text.pt or of an exported .onnx")
+    parser.add_argument("--warm-start",
+                        help="begin with the weights of another text.pt or of an exported .onnx")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--threads", type=int, default=1)
     a = parser.parse_args()

@@ -50,16 +50,19 @@ class RowCompleter {
                const LayeredGrid& grid, const RowCompletionOptions& options)
       : told_(told), pillars_(pillars), grid_(grid), options_(options) {
     for (const std::size_t i : slot_rows::alignRows(told_)) moved_.insert(told_[i].id);
-    for (const MapSlot& slot : told_) likelihood_.learn(gatherEvidence(grid, slot.corners));
+    gatherMissing();
+    for (const SlotEvidence& evidence : evidence_) likelihood_.learn(evidence);
     const std::vector<std::size_t> split =
         slot_rows::splitSlots(told_, pillars, grid, likelihood_, options);
+    gatherMissing();
     for (std::size_t k = split.size(); k-- > 0;) {
+      const auto at = static_cast<std::ptrdiff_t>(split[k]);
       replaced_.push_back(told_[split[k]].id);
-      told_.erase(told_.begin() + static_cast<std::ptrdiff_t>(split[k]));
+      told_.erase(told_.begin() + at);
+      evidence_.erase(evidence_.begin() + at);
     }
     gone_.assign(told_.size(), false);
     misfits_ = findMisfits(told_);
-    for (const MapSlot& slot : told_) evidence_.push_back(gatherEvidence(grid, slot.corners));
   }
 
   RowCompletion complete() {
@@ -93,6 +96,13 @@ class RowCompleter {
   }
 
  private:
+  // Of the slots that came last.
+  void gatherMissing() {
+    for (std::size_t i = evidence_.size(); i < told_.size(); ++i) {
+      evidence_.push_back(gatherEvidence(grid_, told_[i].corners));
+    }
+  }
+
   static double shareOf(const MapSlot& a, const MapSlot& b) {
     constexpr double kFar = 9.0;  // m
     if ((a.corners[0] - b.corners[0]).norm() > kFar) return 0.0;

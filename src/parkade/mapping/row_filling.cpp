@@ -155,20 +155,15 @@ class GapFiller {
   }
 
   [[nodiscard]] Place placeAt(double begin, double end) const {
-    Place place;
-    MapSlot& slot = place.slot;
-    const Vector2d left = row_.at(begin);
-    const Vector2d right = row_.at(end);
-    slot.corners = {left, right, right + pattern_.side, left + pattern_.side};
-    place.evidence = gatherEvidence(grid_, slot.corners);
-    slot.shape = pattern_.shape;
     const Member& nearest = *std::min_element(
         row_.members.begin(), row_.members.end(), [&](const Member& a, const Member& b) {
           return std::abs(a.begin - begin) < std::abs(b.begin - begin);
         });
-    slot.last_seen_ns = told_[nearest.slot].last_seen_ns;
-    slot.corner_sigma = std::max(options_.corner_sigma_m, told_[nearest.slot].corner_sigma);
-    setFree(place.evidence, slot);
+    Place place;
+    place.slot = unseenSlot(pattern_, row_.at(begin), row_.at(end), told_[nearest.slot],
+                            options_.corner_sigma_m);
+    place.evidence = gatherEvidence(grid_, place.slot.corners);
+    setFree(place.evidence, place.slot);
     return place;
   }
 

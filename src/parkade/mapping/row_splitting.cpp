@@ -36,14 +36,14 @@ class SlotSplitter {
     for (int i = 0; i < count; ++i) {
       const Vector2d left = row.at(member.begin + i * length / count);
       const Vector2d right = row.at(member.begin + (i + 1) * length / count);
-      parts.push_back(partOf(slot, pattern, left, right));
+      parts.push_back(unseenSlot(pattern, left, right, slot, options_.corner_sigma_m));
       evidence.push_back(gatherEvidence(grid_, parts.back().corners));
       if (isDenied(evidence.back())) return {};
+      setFree(evidence.back(), parts.back());
     }
     const double log_odds = lengthLogOdds(rest) + betweenLogOdds(evidence) +
                             beyondLogOdds(row, member, pattern, depth_told);
     if (log_odds < options_.min_log_odds) return {};
-    for (int i = 0; i < count; ++i) setFree(evidence[static_cast<std::size_t>(i)], parts[i]);
     return parts;
   }
 
@@ -98,16 +98,6 @@ class SlotSplitter {
   [[nodiscard]] bool hasRearLine(const MapSlot& slot) const {
     const auto& c = slot.corners;
     return likelihood_.entrance(gatherEvidence(grid_, {c[3], c[2], c[1], c[0]}).entrance) > 0.0;
-  }
-
-  [[nodiscard]] MapSlot partOf(const MapSlot& slot, const Pattern& pattern, const Vector2d& left,
-                               const Vector2d& right) const {
-    MapSlot part;
-    part.corners = {left, right, right + pattern.side, left + pattern.side};
-    part.shape = pattern.shape;
-    part.last_seen_ns = slot.last_seen_ns;
-    part.corner_sigma = std::max(options_.corner_sigma_m, slot.corner_sigma);
-    return part;
   }
 
   const LayeredGrid& grid_;

@@ -234,6 +234,16 @@ std::vector<Row> findRows(const std::vector<MapSlot>& slots) {
   return rows;
 }
 
+MapSlot unseenSlot(const Pattern& pattern, const Vector2d& left, const Vector2d& right,
+                   const MapSlot& near, double sigma) {
+  MapSlot slot;
+  slot.corners = {left, right, right + pattern.side, left + pattern.side};
+  slot.shape = pattern.shape;
+  slot.last_seen_ns = near.last_seen_ns;
+  slot.corner_sigma = std::max(sigma, near.corner_sigma);
+  return slot;
+}
+
 double alongRow(const Row& row, const Pattern& pattern, const Vector2d& p) {
   return cross(p - row.origin, pattern.side) / cross(row.u, pattern.side);
 }

@@ -49,6 +49,11 @@ struct Pattern {
   std::vector<Margin> after;
 };
 
+/// A slot of this pattern that nobody saw, between two entrance corners; when it was seen last and
+/// how well its corners are known (at best sigma, m) are those of the slot `near` it.
+MapSlot unseenSlot(const Pattern& pattern, const Eigen::Vector2d& left,
+                   const Eigen::Vector2d& right, const MapSlot& near, double sigma);
+
 /// Where p lies along the row, seen along the sides of its slots.
 double alongRow(const Row& row, const Pattern& pattern, const Eigen::Vector2d& p);
 

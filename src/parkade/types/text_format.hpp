@@ -24,9 +24,8 @@ class TextFormat {
   /// 0 where no marker is known. Once most of several markers are alike, what differs from them was
   /// probably misread, as often as it may be.
   [[nodiscard]] double logPrior(const std::string& text) const {
-    const int same = countOf(patternOf(text));
-    if (hasScheme()) return same == most_ ? 0.0 : kStray;
-    return std::log((same + kUnseen) / (all_ + kUnseen));
+    if (hasScheme()) return isStray(text) ? kStray : 0.0;
+    return std::log((countOf(patternOf(text)) + kUnseen) / (all_ + kUnseen));
   }
 
   /// Whether nearly all markers are called otherwise.
