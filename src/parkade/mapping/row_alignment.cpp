@@ -9,6 +9,7 @@
 
 #include "parkade/core/median.hpp"
 #include "parkade/geometry/planar.hpp"
+#include "parkade/mapping/row_evidence.hpp"
 
 namespace parkade::slot_rows {
 namespace {
@@ -103,7 +104,96 @@ bool align(MapSlot& slot, const std::vector<const MapSlot*>& neighbours) {
   return true;
 }
 
+// rad, how far a direction is off the nearest of four axes.
+double offAxes(const Vector2d& v, double axis) {
+  const double angle = std::atan2(v.y(), v.x()) - axis;
+  return std::abs(angle - std::round(angle / M_PI_2) * M_PI_2);
+}
+
+constexpr double kOnAxis = 4.0 * M_PI / 180.0;
+
+// Of the garage: along most of the slots that are not slanted, weighed by how often they were seen.
+std::optional<double> findAxis(const std::vector<MapSlot>& slots) {
+  constexpr double kMost = 0.6;
+  constexpr double kLeast = 100.0;  // looks
+  double all = 0.0;
+  double most = 0.0;
+  double axis = 0.0;
+  for (const MapSlot& slot : slots) {
+    if (slot.shape == SlotShape::kSlanted) continue;
+    all += static_cast<double>(slot.observations);
+    const Vector2d inward = inwardOf(slot);
+    const double angle = std::atan2(inward.y(), inward.x());
+    double along = 0.0;
+    for (const MapSlot& other : slots) {
+      if (other.shape != SlotShape::kSlanted && offAxes(inwardOf(other), angle) < kOnAxis)
+        along += static_cast<double>(other.observations);
+    }
+    if (along <= most) continue;
+    most = along;
+    axis = angle;
+  }
+  if (most < kLeast || most < kMost * all) return std::nullopt;
+  return axis;
+}
+
+bool isMisread(const MapSlot& slot, double axis) {
+  constexpr double kAskew = 8.0 * M_PI / 180.0;
+  return slot.shape == SlotShape::kSlanted && offAxes(inwardOf(slot), axis) < kOnAxis &&
+         offAxes(slot.corners[1] - slot.corners[0], axis) > kAskew;
+}
+
+// Its entrance through the corner that lies farther out.
+MapSlot squared(const MapSlot& slot) {
+  const Vector2d inward = inwardOf(slot);
+  const double depth = (slot.corners[3] - slot.corners[0]).norm();
+  const double ahead = (slot.corners[1] - slot.corners[0]).dot(inward);
+  MapSlot square = slot;
+  square.shape = SlotShape::kPerpendicular;
+  square.corners[ahead > 0.0 ? 1 : 0] -= std::abs(ahead) * inward;
+  square.corners[2] = square.corners[1] + depth * inward;
+  square.corners[3] = square.corners[0] + depth * inward;
+  return square;
+}
+
+bool isInRow(const MapSlot& slot, const MapSlot& other) {
+  constexpr double kParallel = 0.9945;  // cosine of 6 degrees
+  constexpr double kOff = 0.35;         // m
+  constexpr double kNear = 14.0;        // m
+  const Vector2d between = other.entrance() - slot.entrance();
+  const Vector2d inward = inwardOf(slot);
+  return inward.dot(inwardOf(other)) > kParallel && between.norm() < kNear &&
+         std::abs(between.dot(inward)) < kOff;
+}
+
+bool hasSides(const MapSlot& slot, const LayeredGrid& grid) {
+  constexpr double kHalf = 0.5;
+  const SlotEvidence evidence = gatherEvidence(grid, slot.corners);
+  return std::min(evidence.left.contrast(), evidence.right.contrast()) > kHalf;
+}
+
 }  // namespace
+
+SquaredSlots squareSlots(std::vector<MapSlot>& slots, const LayeredGrid& grid) {
+  SquaredSlots result;
+  const std::optional<double> axis = findAxis(slots);
+  if (!axis) return result;
+  const std::vector<MapSlot> given = slots;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (!isMisread(given[i], *axis)) continue;
+    const MapSlot square = squared(given[i]);
+    const auto isItsRow = [&](const MapSlot& other) {
+      return !isMisread(other, *axis) && isInRow(square, other);
+    };
+    if (std::any_of(given.begin(), given.end(), isItsRow) || hasSides(square, grid)) {
+      slots[i] = square;
+      result.moved.push_back(i);
+    } else {
+      result.wrong.push_back(i);
+    }
+  }
+  return result;
+}
 
 std::vector<std::size_t> alignRows(std::vector<MapSlot>& slots) {
   constexpr int kPasses = 3;  // those moved help their neighbours

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "parkade/mapping/layered_grid.hpp"
 #include "parkade/mapping/parking_map.hpp"
 
 // Inside of the row completion.
@@ -17,5 +18,16 @@ namespace parkade::slot_rows {
 /// neighbours with parallel sides lie on (12 m) are moved along their sides to it, and get the
 /// neighbours' depth and shape. Returns the indices of those moved.
 std::vector<std::size_t> alignRows(std::vector<MapSlot>& slots);
+
+/// A slanted slot has its entrance along the aisle and its sides askew. One with its sides along
+/// the axes of the garage, which most of its square slots tell, and its entrance askew is a square
+/// one with a corner misread, or none at all. It is made square where its outer corner lies on the
+/// line of another slot's entrance, entered the same way (14 m), or where both its sides are
+/// painted in the map for half of what is seen of them; else it is to go.
+struct SquaredSlots {
+  std::vector<std::size_t> moved;
+  std::vector<std::size_t> wrong;  ///< indices; the slots stay as they are
+};
+SquaredSlots squareSlots(std::vector<MapSlot>& slots, const LayeredGrid& grid);
 
 }  // namespace parkade::slot_rows

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "parkade/mapping/bay_ends.hpp"
 #include "parkade/mapping/map_check.hpp"
 #include "parkade/mapping/row_alignment.hpp"
 #include "parkade/mapping/row_evidence.hpp"
@@ -49,6 +50,12 @@ class RowCompleter {
   RowCompleter(const std::vector<MapSlot>& told, const std::vector<Vector2d>& pillars,
                const LayeredGrid& grid, const RowCompletionOptions& options)
       : told_(told), pillars_(pillars), grid_(grid), options_(options) {
+    const slot_rows::SquaredSlots squared = slot_rows::squareSlots(told_, grid);
+    for (const std::size_t i : squared.moved) moved_.insert(told_[i].id);
+    for (std::size_t k = squared.wrong.size(); k-- > 0;) {
+      replaced_.push_back(told_[squared.wrong[k]].id);
+      told_.erase(told_.begin() + static_cast<std::ptrdiff_t>(squared.wrong[k]));
+    }
     for (const std::size_t i : slot_rows::alignRows(told_)) moved_.insert(told_[i].id);
     gatherMissing();
     for (const SlotEvidence& evidence : evidence_) likelihood_.learn(evidence);
@@ -85,6 +92,13 @@ class RowCompleter {
       if (!takePlace(filling, result.added)) continue;
       result.added.insert(result.added.end(), filling.slots.begin(), filling.slots.end());
     }
+    std::vector<MapSlot> known = result.added;
+    for (std::size_t i = 0; i < told_.size(); ++i) {
+      if (!gone_[i]) known.push_back(told_[i]);
+    }
+    const std::vector<MapSlot> ends =
+        slot_rows::findBayEnds(known, pillars_, grid_, likelihood_, options_);
+    result.added.insert(result.added.end(), ends.begin(), ends.end());
     result.replaced = replaced_;
     for (std::size_t i = 0; i < told_.size(); ++i) {
       const bool is_new = told_[i].id == 0;

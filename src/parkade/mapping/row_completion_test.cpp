@@ -7,6 +7,7 @@
 #include <set>
 
 #include "parkade/mapping/map_check.hpp"
+#include "parkade/mapping/row_test_support.hpp"
 #include "parkade/mapping/slot_plausibility.hpp"
 #include "parkade/mapping/slot_row.hpp"
 
@@ -15,84 +16,12 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kWidth = 2.5;
-constexpr double kDepth = 5.0;
-constexpr double kMargin = 0.5;  // m from a pillar's middle to the next slot
-constexpr double kBay = 3 * kWidth + 2 * kMargin;
-
-// A row along x whose slots are entered from below: bays of three between pillars at 0, kBay, ...
-// The floor all around has been seen.
-class Garage {
- public:
-  Garage() {
-    fill(GridLayer::kParkingLines, SemanticClass::kFloor, {-12.0, -4.0}, {36.0, 9.0});
-    fill(GridLayer::kAvailability, SemanticClass::kFloor, {-12.0, -4.0}, {36.0, 9.0});
-    for (int bay = 0; bay < 4; ++bay) {
-      MapObject pillar;
-      pillar.id = bay;
-      pillar.semantic_class = SemanticClass::kPillar;
-      pillar.position = {bay * kBay, 1.2, 0.0};
-      pillar.observations = 40;
-      objects.push_back(pillar);
-    }
-  }
-
-  static MapSlot slotAt(int bay, int place) {
-    const double x = bay * kBay + kMargin + place * kWidth;
-    MapSlot slot;
-    slot.id = 10 * bay + place + 1;
-    slot.corners = {Vector2d(x, 0.0), Vector2d(x + kWidth, 0.0), Vector2d(x + kWidth, kDepth),
-                    Vector2d(x, kDepth)};
-    slot.corner_sigma = 0.02;
-    slot.observations = 20;
-    slot.last_seen_ns = 5;
-    return slot;
-  }
-  void tell(int bay, std::set<int> places) {
-    for (const int place : places) told.push_back(slotAt(bay, place));
-  }
-  // Paints both sides and the entrance of a slot.
-  void paint(const MapSlot& slot) {
-    const auto& c = slot.corners;
-    for (const auto& [from, to] : {std::pair{c[0], c[3]}, {c[1], c[2]}, {c[0], c[1]}}) {
-      const int count = static_cast<int>((to - from).norm() / 0.02);
-      for (int i = 0; i <= count; ++i) {
-        const Vector2d p = from + (to - from) * i / count;
-        set(GridLayer::kParkingLines, SemanticClass::kSlotLine, p);
-      }
-    }
-  }
-  void park(const MapSlot& slot) {
-    fill(GridLayer::kAvailability, SemanticClass::kVehicle, slot.corners[0] + Vector2d(0.3, 0.4),
-         slot.corners[2] - Vector2d(0.3, 0.4));
-  }
-  void paintTold() {
-    for (const MapSlot& slot : told) paint(slot);
-  }
-  void fill(GridLayer layer, SemanticClass c, const Vector2d& min, const Vector2d& max) {
-    for (double x = min.x(); x < max.x(); x += 0.05) {
-      for (double y = min.y(); y < max.y(); y += 0.05) set(layer, c, {x + 0.01, y + 0.01});
-    }
-  }
-  [[nodiscard]] RowCompletion complete() const { return completeRows(told, objects, grid); }
-
-  std::vector<MapSlot> told;
-  std::vector<MapObject> objects;
-  LayeredGrid grid;
-
- private:
-  void set(GridLayer layer, SemanticClass c, const Vector2d& p) {
-    GridCell& cell = grid.touch(layer, grid.cellOf(p));
-    cell.semantic_class = c;
-    cell.log_odds = 40;
-  }
-};
-
-void expectAt(const MapSlot& slot, const MapSlot& expected) {
-  for (std::size_t k = 0; k < 4; ++k) {
-    EXPECT_LT((slot.corners[k] - expected.corners[k]).norm(), 0.02) << "corner " << k;
-  }
-}
+using testing::expectAt;
+using testing::Garage;
+using testing::kBay;
+using testing::kDepth;
+using testing::kMargin;
+using testing::kWidth;
 
 TEST(RowCompletion, FindsTheSlotBetweenTwoOthers) {
   Garage garage;

@@ -148,4 +148,9 @@ SlotEvidence gatherEvidence(const LayeredGrid& grid, const Corners& c) {
   return evidence;
 }
 
+SlotEvidence::Line lookAlong(const LayeredGrid& grid, const Vector2d& from, const Vector2d& to) {
+  const Vector2d u = (to - from).normalized();
+  return GridProbe(grid).line(from, to, Vector2d(-u.y(), u.x()));
+}
+
 }  // namespace parkade::slot_rows

@@ -34,4 +34,8 @@ struct SlotEvidence {
 /// corners: entrance left and right, rear right and left.
 SlotEvidence gatherEvidence(const LayeredGrid& grid, const std::array<Eigen::Vector2d, 4>& corners);
 
+/// Of the line between two places.
+SlotEvidence::Line lookAlong(const LayeredGrid& grid, const Eigen::Vector2d& from,
+                             const Eigen::Vector2d& to);
+
 }  // namespace parkade::slot_rows

@@ -33,35 +33,51 @@ bool areInOneRow(const MapSlot& a, const MapSlot& b) {
          std::abs(cross((u + v).normalized(), between)) < kOff;
 }
 
+double weightOf(const MapSlot& slot) {
+  constexpr double kFloor = 0.03;  // m: neighbours' corners lie no better in one line
+  return 1.0 / (slot.corner_sigma * slot.corner_sigma + kFloor * kFloor);
+}
+
 Row makeRow(const std::vector<MapSlot>& slots, const std::vector<std::size_t>& of_row) {
   Row row;
-  Vector2d mean = Vector2d::Zero();
   Vector2d front = Vector2d::Zero();
-  double weights = 0.0;
-  const auto weightOf = [](const MapSlot& slot) {
-    constexpr double kFloor = 0.03;  // m: neighbours' corners lie no better in one line
-    return 1.0 / (slot.corner_sigma * slot.corner_sigma + kFloor * kFloor);
-  };
-  for (const std::size_t i : of_row) {
-    const double w = weightOf(slots[i]);
-    mean += w * slots[i].entrance();
-    front += w * frontOf(slots[i]).normalized();
-    weights += w;
-  }
-  row.origin = mean / weights;
+  for (const std::size_t i : of_row) front += weightOf(slots[i]) * frontOf(slots[i]).normalized();
+  row.origin = slots[of_row.front()].entrance();
   row.u = front.normalized();
-  // The line through all corners, once they lie far enough apart to tell it better.
-  const Vector2d n(-row.u.y(), row.u.x());
-  double ss = 0.0;
-  double sn = 0.0;
-  for (const std::size_t i : of_row) {
-    for (std::size_t k = 0; k < 2; ++k) {
-      const Vector2d d = slots[i].corners[k] - row.origin;
-      ss += weightOf(slots[i]) * d.dot(row.u) * d.dot(row.u);
-      sn += weightOf(slots[i]) * d.dot(row.u) * d.dot(n);
+  // The line through all corners (which also lie far enough apart to tell its direction better),
+  // those least that are far off: one misread corner turns a row by degrees.
+  constexpr int kRounds = 8;
+  constexpr double kFar = 0.05;  // m
+  double far = 1e3;              // all alike at first
+  for (int round = 0; round < kRounds; ++round, far = kFar) {
+    const Vector2d n(-row.u.y(), row.u.x());
+    const auto weightAt = [&](const MapSlot& slot, const Vector2d& corner) {
+      const double off = n.dot(corner - row.origin) / far;
+      return weightOf(slot) / (1.0 + off * off);
+    };
+    Vector2d mean = Vector2d::Zero();
+    double weights = 0.0;
+    for (const std::size_t i : of_row) {
+      for (std::size_t k = 0; k < 2; ++k) {
+        const double w = weightAt(slots[i], slots[i].corners[k]);
+        mean += w * slots[i].corners[k];
+        weights += w;
+      }
     }
+    mean /= weights;
+    double ss = 0.0;
+    double sn = 0.0;
+    for (const std::size_t i : of_row) {
+      for (std::size_t k = 0; k < 2; ++k) {
+        const Vector2d d = slots[i].corners[k] - mean;
+        const double w = weightAt(slots[i], slots[i].corners[k]);
+        ss += w * d.dot(row.u) * d.dot(row.u);
+        sn += w * d.dot(row.u) * d.dot(n);
+      }
+    }
+    row.origin = mean;
+    row.u = (row.u + sn / ss * n).normalized();
   }
-  row.u = (row.u + sn / ss * n).normalized();
   for (const std::size_t i : of_row) {
     row.members.push_back({i, (slots[i].corners[0] - row.origin).dot(row.u),
                            (slots[i].corners[1] - row.origin).dot(row.u)});

@@ -1,0 +1,310 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/mapping/bay_ends.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "parkade/core/median.hpp"
+#include "parkade/geometry/planar.hpp"
+#include "parkade/mapping/map_check.hpp"
+#include "parkade/mapping/slot_row.hpp"
+
+namespace parkade::slot_rows {
+namespace {
+
+using Eigen::Vector2d;
+using Corners = std::array<Vector2d, 4>;
+
+// How a slot lies beside a column, in the axes of its row: along the entrances from left to right
+// for who drives in, and into the slots.
+struct Stand {
+  SlotShape shape = SlotShape::kPerpendicular;
+  bool is_right = true;                // the slot, of the column
+  Vector2d corner = Vector2d::Zero();  // from the column to the entrance corner next to it
+  Vector2d side = Vector2d::Zero();
+  double front = 0.0;  // m
+
+  [[nodiscard]] bool isLike(const Stand& other) const {
+    constexpr double kCorner = 0.3;  // m
+    constexpr double kFront = 0.15;
+    constexpr double kSide = 0.5;
+    return shape == other.shape && is_right == other.is_right &&
+           (corner - other.corner).norm() < kCorner && std::abs(front - other.front) < kFront &&
+           (side - other.side).norm() < kSide;
+  }
+};
+
+Vector2d leftOf(const Vector2d& v) {
+  return {-v.y(), v.x()};
+}
+
+void gatherStands(const Row& row, const Pattern& pattern, const std::vector<MapSlot>& slots,
+                  const std::vector<Vector2d>& pillars, std::vector<Stand>& stands) {
+  constexpr double kAhead = 0.8;  // m: columns in front of the entrances
+  constexpr double kBehind = 1.0;
+  constexpr double kInside = 0.3;
+  constexpr double kMost = 2.0;  // beside a slot
+  const Vector2d n = leftOf(row.u);
+  const auto inRow = [&](const Vector2d& v) { return Vector2d(v.dot(row.u), v.dot(n)); };
+  Stand stand;
+  stand.shape = pattern.shape;
+  stand.side = inRow(pattern.side);
+  stand.front = pattern.front;
+  for (const Vector2d& p : pillars) {
+    const Vector2d at = inRow(p - row.origin);
+    if (at.y() < -kAhead || at.y() > stand.side.y() + kBehind) continue;
+    const double along = alongRow(row, pattern, p);
+    for (const Member& m : row.members) {
+      if (slots[m.slot].shape != pattern.shape) continue;
+      for (const bool is_right : {true, false}) {
+        const double between = is_right ? m.begin - along : along - m.end;
+        if (between < -kInside || between > std::min(kMost, 0.95 * pattern.front)) continue;
+        stand.is_right = is_right;
+        stand.corner = Vector2d(is_right ? m.begin : m.end, 0.0) - at;
+        stands.push_back(stand);
+      }
+    }
+  }
+}
+
+// What was found again and again, most often first.
+std::vector<Stand> commonOf(std::vector<Stand> stands) {
+  constexpr std::ptrdiff_t kLeast = 3;
+  std::vector<Stand> common;
+  while (!stands.empty()) {
+    const auto alike = [&](const Stand& stand) {
+      return std::count_if(stands.begin(), stands.end(),
+                           [&](const Stand& other) { return stand.isLike(other); });
+    };
+    const Stand most =
+        *std::max_element(stands.begin(), stands.end(),
+                          [&](const Stand& a, const Stand& b) { return alike(a) < alike(b); });
+    if (alike(most) < kLeast) break;
+    std::array<std::vector<double>, 5> values;
+    for (const Stand& other : stands) {
+      if (!most.isLike(other)) continue;
+      values[0].push_back(other.corner.x());
+      values[1].push_back(other.corner.y());
+      values[2].push_back(other.side.x());
+      values[3].push_back(other.side.y());
+      values[4].push_back(other.front);
+    }
+    Stand middle = most;
+    middle.corner = {median(values[0]), median(values[1])};
+    middle.side = {median(values[2]), median(values[3])};
+    middle.front = median(values[4]);
+    common.push_back(middle);
+    std::erase_if(stands, [&](const Stand& other) { return most.isLike(other); });
+  }
+  return common;
+}
+
+// Of the rows, either way.
+std::vector<Vector2d> directionsOf(const std::vector<Row>& rows) {
+  constexpr double kSame = 0.9986;  // cosine of 3 degrees
+  std::vector<Vector2d> directions;
+  for (const Row& row : rows) {
+    for (const Vector2d& u : {row.u, Vector2d(-row.u)}) {
+      if (std::none_of(directions.begin(), directions.end(),
+                       [&](const Vector2d& other) { return u.dot(other) > kSame; })) {
+        directions.push_back(u);
+      }
+    }
+  }
+  return directions;
+}
+
+struct BayEnd {
+  MapSlot slot;
+  double merit = 0.0;  // of several at one place the greatest
+};
+
+class BayEndFinder {
+ public:
+  BayEndFinder(const std::vector<MapSlot>& slots, const LayeredGrid& grid,
+               const SlotLikelihood& likelihood, const RowCompletionOptions& options)
+      : slots_(slots), grid_(grid), likelihood_(likelihood), options_(options) {}
+
+  // Beside the column at p, in a row of direction u; none where it is not likely.
+  [[nodiscard]] std::optional<BayEnd> find(const Vector2d& p, const Vector2d& u,
+                                           const Stand& stand) const {
+    const Vector2d n = leftOf(u);
+    std::optional<Corners> best;
+    double most = 0.0;
+    for (const double along : {0.0, -0.1, 0.1, -0.2, 0.2}) {
+      for (const double deep : {0.0, -0.1, 0.1, -0.2, 0.2, -0.3, 0.3}) {
+        const Vector2d corner = p + (stand.corner.x() + along) * u + (stand.corner.y() + deep) * n;
+        const Vector2d other = corner + (stand.is_right ? stand.front : -stand.front) * u;
+        const Vector2d side = stand.side.x() * u + stand.side.y() * n;
+        const Vector2d& left = stand.is_right ? corner : other;
+        const Vector2d& right = stand.is_right ? other : corner;
+        const Corners corners = {left, right, right + side, left + side};
+        const double score = fit(corners);
+        if (score <= most) continue;
+        most = score;
+        best = corners;
+      }
+    }
+    if (!best || !hasRoom(*best)) return std::nullopt;
+    return weigh(*best, stand);
+  }
+
+ private:
+  static constexpr double kPast = 0.15;  // m, half a line and its error
+  static constexpr double kStandsOut =
+      3.9;  // one of two sides does, by chance one line in a hundred
+
+  static double paintOf(const SlotEvidence::Line& line) {
+    return std::max(0.0, line.contrast()) * line.seen_m;
+  }
+  [[nodiscard]] SlotEvidence::Line ahead(const Vector2d& front, const Vector2d& inward) const {
+    constexpr double kAhead = 1.2;  // m
+    return lookAlong(grid_, front - kPast * inward, front - kAhead * inward);
+  }
+
+  // Metres of paint that stand out, less what goes on in front of the entrance.
+  [[nodiscard]] double fit(const Corners& c) const {
+    constexpr double kTooLong = 2.0;
+    const Vector2d inward = (c[3] - c[0]).normalized();
+    const Vector2d u = (c[1] - c[0]).normalized();
+    double sum = paintOf(lookAlong(grid_, c[0] + kPast * u, c[1] - kPast * u)) +
+                 paintOf(lookAlong(grid_, c[3] + kPast * u, c[2] - kPast * u));
+    for (const auto& [front, rear] : {std::pair{c[0], c[3]}, {c[1], c[2]}}) {
+      sum += paintOf(lookAlong(grid_, front + kPast * inward, rear)) -
+             kTooLong * paintOf(ahead(front, inward));
+    }
+    return sum;
+  }
+
+  // No known slot lies there, or where one would drive in.
+  [[nodiscard]] bool hasRoom(const Corners& c) const {
+    constexpr double kFar = 12.0;  // m
+    constexpr double kOverlap = 0.15;
+    constexpr double kAisle = 3.0;  // m
+    const Vector2d u = c[1] - c[0];
+    Vector2d out = leftOf(u).normalized();
+    if (out.dot(c[3] - c[0]) > 0.0) out = -out;
+    const Vector2d left = c[0] + 0.2 * u + kPast * out;
+    const Vector2d right = c[1] - 0.2 * u + kPast * out;
+    const Corners aisle = {left, right, right + kAisle * out, left + kAisle * out};
+    return std::none_of(slots_.begin(), slots_.end(), [&](const MapSlot& slot) {
+      return (slot.corners[0] - c[0]).norm() < kFar &&
+             (overlapShare(slot.corners, c) > kOverlap || overlapShare(slot.corners, aisle) > 0.05);
+    });
+  }
+
+  // Longer than a slot along the aisle is deep, and not beyond the entrance.
+  [[nodiscard]] bool standsOut(const SlotEvidence::Line& line, const Vector2d& front,
+                               const Vector2d& inward) const {
+    constexpr double kContrast = 0.3;
+    constexpr double kLeast = 2.5;  // m
+    constexpr double kBeyond = 0.3;
+    return line.contrast() > kContrast && line.seen_m > kLeast &&
+           ahead(front, inward).painted < kBeyond;
+  }
+
+  // Where one side is plain to see the other is as well, if the floor is: of the slots that were
+  // told it is missing in 3 of 100 (docs/math/slots.md), and they were told by their sides.
+  [[nodiscard]] double otherSide(const SlotEvidence::Line& line, const Vector2d& front,
+                                 const Vector2d& inward) const {
+    constexpr double kSeen = 1.0;       // m
+    constexpr double kMissing = -2.25;  // log(0.1 / 0.95)
+    if (standsOut(line, front, inward)) return kStandsOut;
+    const double log_odds = likelihood_.side(line);
+    return log_odds < 0.0 && line.seen_m > kSeen ? kMissing : log_odds;
+  }
+
+  // What is the side of a known slot says nothing of its neighbour.
+  [[nodiscard]] bool isSideOfKnown(const Vector2d& front) const {
+    constexpr double kSame = 0.5;  // m
+    return std::any_of(slots_.begin(), slots_.end(), [&](const MapSlot& slot) {
+      return std::min((slot.corners[0] - front).norm(), (slot.corners[1] - front).norm()) < kSame;
+    });
+  }
+
+  [[nodiscard]] std::optional<BayEnd> weigh(const Corners& corners, const Stand& stand) const {
+    const SlotEvidence e = gatherEvidence(grid_, corners);
+    const Vector2d inward = (corners[3] - corners[0]).normalized();
+    const Vector2d& front = corners[stand.is_right ? 0 : 1];
+    const Vector2d& other = corners[stand.is_right ? 1 : 0];
+    if (isDenied(e) || isSideOfKnown(front) ||
+        !standsOut(stand.is_right ? e.left : e.right, front, inward)) {
+      return std::nullopt;
+    }
+    constexpr double kPrior = -3.0;  // most columns have known slots beside them, or none
+    double log_odds =
+        kPrior + kStandsOut + likelihood_.entrance(e.entrance) + SlotLikelihood::vehicle(e);
+    if (!isSideOfKnown(other))
+      log_odds += otherSide(stand.is_right ? e.right : e.left, other, inward);
+    if (log_odds < options_.min_log_odds) return std::nullopt;
+    BayEnd end;
+    end.merit = log_odds + fit(corners);
+    end.slot = makeSlot(corners, stand, e);
+    return end;
+  }
+
+  [[nodiscard]] MapSlot makeSlot(const Corners& corners, const Stand& stand,
+                                 const SlotEvidence& evidence) const {
+    const MapSlot& near =
+        *std::min_element(slots_.begin(), slots_.end(), [&](const MapSlot& a, const MapSlot& b) {
+          return (a.corners[0] - corners[0]).norm() < (b.corners[0] - corners[0]).norm();
+        });
+    constexpr double kSigma = 0.1;  // m
+    Pattern pattern;
+    pattern.shape = stand.shape;
+    pattern.side = corners[3] - corners[0];
+    MapSlot slot = unseenSlot(pattern, corners[0], corners[1], near,
+                              std::max(kSigma, options_.corner_sigma_m));
+    setFree(evidence, slot);
+    return slot;
+  }
+
+  const std::vector<MapSlot>& slots_;
+  const LayeredGrid& grid_;
+  const SlotLikelihood& likelihood_;
+  const RowCompletionOptions& options_;
+};
+
+}  // namespace
+
+std::vector<MapSlot> findBayEnds(const std::vector<MapSlot>& slots,
+                                 const std::vector<Vector2d>& pillars, const LayeredGrid& grid,
+                                 const SlotLikelihood& likelihood,
+                                 const RowCompletionOptions& options) {
+  const std::vector<Row> rows = findRows(slots);
+  const std::vector<std::vector<Pattern>> patterns = findPatterns(rows, slots, pillars);
+  std::vector<Stand> stands;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (const Pattern& pattern : patterns[i]) {
+      if (pattern.of_row && pattern.shape != SlotShape::kParallel)
+        gatherStands(rows[i], pattern, slots, pillars, stands);
+    }
+  }
+  stands = commonOf(std::move(stands));
+  const BayEndFinder finder(slots, grid, likelihood, options);
+  std::vector<BayEnd> ends;
+  for (const Vector2d& u : directionsOf(rows)) {
+    for (const Vector2d& p : pillars) {
+      for (const Stand& stand : stands) {
+        if (const auto end = finder.find(p, u, stand)) ends.push_back(*end);
+      }
+    }
+  }
+  std::stable_sort(ends.begin(), ends.end(),
+                   [](const BayEnd& a, const BayEnd& b) { return a.merit > b.merit; });
+  constexpr double kOverlap = 0.15;
+  std::vector<MapSlot> found;
+  for (const BayEnd& end : ends) {
+    if (std::none_of(found.begin(), found.end(), [&](const MapSlot& other) {
+          return overlapShare(other.corners, end.slot.corners) > kOverlap;
+        })) {
+      found.push_back(end.slot);
+    }
+  }
+  return found;
+}
+
+}  // namespace parkade::slot_rows

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/mapping/row_alignment.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "parkade/mapping/row_test_support.hpp"
+#include "parkade/mapping/slot_row.hpp"
+
+namespace parkade {
+namespace {
+
+using Eigen::Vector2d;
+using slot_rows::SquaredSlots;
+using slot_rows::squareSlots;
+using testing::expectAt;
+using testing::Garage;
+using testing::kDepth;
+
+// As pictures tell a slot whose right side is worn off at its end.
+MapSlot misread(MapSlot slot) {
+  slot.shape = SlotShape::kSlanted;
+  slot.corners[1].y() += 0.9;
+  slot.corners[2].y() += 0.9;
+  return slot;
+}
+
+class Squaring : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    for (const int bay : {0, 1}) garage_.tell(bay, {0, 1, 2});
+  }
+  SquaredSlots square() { return squareSlots(garage_.told, garage_.grid); }
+  Garage garage_;
+};
+
+TEST_F(Squaring, ACornerOfARowIsPutRight) {
+  garage_.told.push_back(misread(Garage::slotAt(2, 0)));
+  const SquaredSlots squared = square();
+  ASSERT_EQ(squared.moved, std::vector<std::size_t>{6});
+  EXPECT_TRUE(squared.wrong.empty());
+  expectAt(garage_.told[6], Garage::slotAt(2, 0));
+  EXPECT_EQ(garage_.told[6].shape, SlotShape::kPerpendicular);
+}
+
+// Away from all rows.
+MapSlot alone() {
+  MapSlot slot = misread(Garage::slotAt(2, 0));
+  for (Vector2d& corner : slot.corners) corner.y() += 1.7;
+  return slot;
+}
+
+TEST_F(Squaring, WhatStandsAloneNeedsItsSides) {
+  garage_.told.push_back(alone());
+  const SquaredSlots squared = square();
+  EXPECT_TRUE(squared.moved.empty());
+  EXPECT_EQ(squared.wrong, std::vector<std::size_t>{6});
+}
+
+TEST_F(Squaring, WhatStandsAloneWithPaintedSidesIsMadeSquare) {
+  garage_.told.push_back(alone());
+  garage_.paint(alone());
+  const SquaredSlots squared = square();
+  EXPECT_EQ(squared.moved, std::vector<std::size_t>{6});
+  EXPECT_TRUE(squared.wrong.empty());
+}
+
+TEST_F(Squaring, SlantedSlotsStay) {
+  MapSlot slot = Garage::slotAt(2, 0);
+  slot.shape = SlotShape::kSlanted;
+  slot.corners[2].x() += 2.5;
+  slot.corners[3].x() += 2.5;
+  garage_.told.push_back(slot);
+  const SquaredSlots squared = square();
+  EXPECT_TRUE(squared.moved.empty());
+  EXPECT_TRUE(squared.wrong.empty());
+}
+
+TEST_F(Squaring, WhereNoAxesAreKnownNothingChanges) {
+  garage_.told = {misread(Garage::slotAt(0, 0))};
+  const SquaredSlots squared = square();
+  EXPECT_TRUE(squared.moved.empty());
+  EXPECT_TRUE(squared.wrong.empty());
+}
+
+TEST(SlotRow, OneMisreadCornerHardlyTurnsARow) {
+  std::vector<MapSlot> told;
+  for (int place = 0; place < 3; ++place) told.push_back(Garage::slotAt(0, place));
+  told[0].corners[0].y() += 0.22;
+  const std::vector<slot_rows::Row> rows = slot_rows::findRows(told);
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_LT(std::abs(std::atan2(rows[0].u.y(), rows[0].u.x())), 0.3 * M_PI / 180.0);
+  EXPECT_NEAR(rows[0].origin.y(), 0.0, 0.02);
+}
+
+}  // namespace
+}  // namespace parkade
