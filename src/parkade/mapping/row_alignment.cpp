@@ -139,8 +139,11 @@ std::optional<double> findAxis(const std::vector<MapSlot>& slots) {
 
 bool isMisread(const MapSlot& slot, double axis) {
   constexpr double kAskew = 8.0 * M_PI / 180.0;
-  return slot.shape == SlotShape::kSlanted && offAxes(inwardOf(slot), axis) < kOnAxis &&
-         offAxes(slot.corners[1] - slot.corners[0], axis) > kAskew;
+  constexpr double kMore = 2.5;  // than its sides
+  const double sides = offAxes(inwardOf(slot), axis);
+  const double entrance = offAxes(slot.corners[1] - slot.corners[0], axis);
+  return slot.shape == SlotShape::kSlanted && sides < kAskew && entrance > kAskew &&
+         entrance > kMore * sides;
 }
 
 // Its entrance through the corner that lies farther out.

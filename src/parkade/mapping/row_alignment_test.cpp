@@ -67,6 +67,14 @@ TEST_F(Squaring, WhatStandsAloneWithPaintedSidesIsMadeSquare) {
   EXPECT_TRUE(squared.wrong.empty());
 }
 
+TEST_F(Squaring, SidesMayBeALittleAskewAsWell) {
+  MapSlot slot = misread(Garage::slotAt(2, 0));
+  slot.corners[2].x() += 0.4;
+  slot.corners[3].x() += 0.4;
+  garage_.told.push_back(slot);
+  EXPECT_EQ(square().moved, std::vector<std::size_t>{6});
+}
+
 TEST_F(Squaring, SlantedSlotsStay) {
   MapSlot slot = Garage::slotAt(2, 0);
   slot.shape = SlotShape::kSlanted;

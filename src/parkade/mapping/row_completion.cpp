@@ -92,12 +92,9 @@ class RowCompleter {
       if (!takePlace(filling, result.added)) continue;
       result.added.insert(result.added.end(), filling.slots.begin(), filling.slots.end());
     }
-    std::vector<MapSlot> known = result.added;
-    for (std::size_t i = 0; i < told_.size(); ++i) {
-      if (!gone_[i]) known.push_back(told_[i]);
-    }
+    dropLonelySlots(result.added);
     const std::vector<MapSlot> ends =
-        slot_rows::findBayEnds(known, pillars_, grid_, likelihood_, options_);
+        slot_rows::findBayEnds(knownWith(result.added), pillars_, grid_, likelihood_, options_);
     result.added.insert(result.added.end(), ends.begin(), ends.end());
     result.replaced = replaced_;
     for (std::size_t i = 0; i < told_.size(); ++i) {
@@ -114,6 +111,32 @@ class RowCompleter {
   void gatherMissing() {
     for (std::size_t i = evidence_.size(); i < told_.size(); ++i) {
       evidence_.push_back(gatherEvidence(grid_, told_[i].corners));
+    }
+  }
+
+  // What is left of the slots told, behind those added.
+  [[nodiscard]] std::vector<MapSlot> knownWith(std::vector<MapSlot> added) const {
+    for (std::size_t i = 0; i < told_.size(); ++i) {
+      if (!gone_[i]) added.push_back(told_[i]);
+    }
+    return added;
+  }
+
+  // Sides of two bays with a gap between them look like a slot along the aisle; such ones stand in
+  // no row, and few pictures take them for one.
+  void dropLonelySlots(const std::vector<MapSlot>& added) {
+    constexpr int kFewLooks = 8;
+    const std::vector<MapSlot> known = knownWith(added);
+    std::set<std::int64_t> lonely;
+    for (const Row& row : slot_rows::findRows(known)) {
+      const MapSlot& slot = known[row.members.front().slot];
+      if (row.members.size() == 1 && slot.shape == SlotShape::kParallel &&
+          slot.observations < kFewLooks && slot.id != 0) {
+        lonely.insert(slot.id);
+      }
+    }
+    for (std::size_t i = 0; i < told_.size(); ++i) {
+      if (lonely.count(told_[i].id) > 0) gone_[i] = true;
     }
   }
 

@@ -194,6 +194,21 @@ TEST(RowCompletion, VehiclesAloneMakeNoSlots) {
   EXPECT_TRUE(garage.complete().added.empty());
 }
 
+TEST(RowCompletion, ALonelySlotAlongTheAisleMustBeSeenOften) {
+  Garage garage;
+  garage.tell(0, {0, 1, 2});
+  garage.paintTold();
+  MapSlot along = Garage::slotAt(0, 0);
+  along.id = 77;
+  along.shape = SlotShape::kParallel;
+  along.corners = {Vector2d(26.0, 20.0), Vector2d(32.0, 20.0), Vector2d(32.0, 22.2),
+                   Vector2d(26.0, 22.2)};
+  garage.told.push_back(along);
+  EXPECT_TRUE(garage.complete().replaced.empty());
+  garage.told.back().observations = 4;
+  EXPECT_EQ(garage.complete().replaced, std::vector<std::int64_t>{77});
+}
+
 TEST(RowCompletion, MovesAnEntranceToItsRow) {
   Garage garage;
   garage.tell(0, {0, 1, 2});
