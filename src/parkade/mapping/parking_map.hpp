@@ -25,7 +25,7 @@ struct MapSlot {
                                             Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
   double corner_sigma = 0.0;  ///< m, standard deviation of the entrance corners, per axis
   SlotShape shape = SlotShape::kPerpendicular;
-  std::string number;             ///< painted number, empty where not read
+  std::string number;             ///< painted; read, or told by those of its bay (bay_numbers.hpp)
   std::string zone;               ///< zone marker nearby, empty where not read
   double probability_free = 0.5;  ///< at last_seen_ns
   std::int64_t observations = 0;  ///< 0: told by its row (row_completion.hpp)

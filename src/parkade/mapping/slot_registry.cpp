@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "parkade/mapping/bay_numbers.hpp"
 #include "parkade/mapping/map_check.hpp"
 #include "parkade/mapping/row_completion.hpp"
 #include "parkade/mapping/slot_numbers.hpp"
@@ -317,9 +318,13 @@ std::vector<MapSlot> SlotRegistry::slots(TimeNs now_ns,
     }
   }
   keepSurestNumbers(numbers);
+  std::vector<double> support(result.size(), 0.0);
   for (std::size_t i = 0; i < result.size(); ++i) {
-    if (numbers[i]) result[i].number = numbers[i]->text;
+    if (!numbers[i]) continue;
+    result[i].number = numbers[i]->text;
+    support[i] = numbers[i]->support;
   }
+  slot_registry::numberBays(result, support);
   return result;
 }
 
