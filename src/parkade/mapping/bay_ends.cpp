@@ -7,8 +7,8 @@
 #include <cmath>
 #include <optional>
 
-#include "parkade/core/median.hpp"
 #include "parkade/geometry/planar.hpp"
+#include "parkade/mapping/bay_stands.hpp"
 #include "parkade/mapping/map_check.hpp"
 #include "parkade/mapping/slot_row.hpp"
 
@@ -18,88 +18,8 @@ namespace {
 using Eigen::Vector2d;
 using Corners = std::array<Vector2d, 4>;
 
-// How a slot lies beside a column, in the axes of its row: along the entrances from left to right
-// for who drives in, and into the slots.
-struct Stand {
-  SlotShape shape = SlotShape::kPerpendicular;
-  bool is_right = true;                // the slot, of the column
-  Vector2d corner = Vector2d::Zero();  // from the column to the entrance corner next to it
-  Vector2d side = Vector2d::Zero();
-  double front = 0.0;  // m
-
-  [[nodiscard]] bool isLike(const Stand& other) const {
-    constexpr double kCorner = 0.3;  // m
-    constexpr double kFront = 0.15;
-    constexpr double kSide = 0.5;
-    return shape == other.shape && is_right == other.is_right &&
-           (corner - other.corner).norm() < kCorner && std::abs(front - other.front) < kFront &&
-           (side - other.side).norm() < kSide;
-  }
-};
-
 Vector2d leftOf(const Vector2d& v) {
   return {-v.y(), v.x()};
-}
-
-void gatherStands(const Row& row, const Pattern& pattern, const std::vector<MapSlot>& slots,
-                  const std::vector<Vector2d>& pillars, std::vector<Stand>& stands) {
-  constexpr double kAhead = 0.8;  // m: columns in front of the entrances
-  constexpr double kBehind = 1.0;
-  constexpr double kInside = 0.3;
-  constexpr double kMost = 2.0;  // beside a slot
-  const Vector2d n = leftOf(row.u);
-  const auto inRow = [&](const Vector2d& v) { return Vector2d(v.dot(row.u), v.dot(n)); };
-  Stand stand;
-  stand.shape = pattern.shape;
-  stand.side = inRow(pattern.side);
-  stand.front = pattern.front;
-  for (const Vector2d& p : pillars) {
-    const Vector2d at = inRow(p - row.origin);
-    if (at.y() < -kAhead || at.y() > stand.side.y() + kBehind) continue;
-    const double along = alongRow(row, pattern, p);
-    for (const Member& m : row.members) {
-      if (slots[m.slot].shape != pattern.shape) continue;
-      for (const bool is_right : {true, false}) {
-        const double between = is_right ? m.begin - along : along - m.end;
-        if (between < -kInside || between > std::min(kMost, 0.95 * pattern.front)) continue;
-        stand.is_right = is_right;
-        stand.corner = Vector2d(is_right ? m.begin : m.end, 0.0) - at;
-        stands.push_back(stand);
-      }
-    }
-  }
-}
-
-// What was found again and again, most often first.
-std::vector<Stand> commonOf(std::vector<Stand> stands) {
-  constexpr std::ptrdiff_t kLeast = 3;
-  std::vector<Stand> common;
-  while (!stands.empty()) {
-    const auto alike = [&](const Stand& stand) {
-      return std::count_if(stands.begin(), stands.end(),
-                           [&](const Stand& other) { return stand.isLike(other); });
-    };
-    const Stand most =
-        *std::max_element(stands.begin(), stands.end(),
-                          [&](const Stand& a, const Stand& b) { return alike(a) < alike(b); });
-    if (alike(most) < kLeast) break;
-    std::array<std::vector<double>, 5> values;
-    for (const Stand& other : stands) {
-      if (!most.isLike(other)) continue;
-      values[0].push_back(other.corner.x());
-      values[1].push_back(other.corner.y());
-      values[2].push_back(other.side.x());
-      values[3].push_back(other.side.y());
-      values[4].push_back(other.front);
-    }
-    Stand middle = most;
-    middle.corner = {median(values[0]), median(values[1])};
-    middle.side = {median(values[2]), median(values[3])};
-    middle.front = median(values[4]);
-    common.push_back(middle);
-    std::erase_if(stands, [&](const Stand& other) { return most.isLike(other); });
-  }
-  return common;
 }
 
 // Of the rows, either way.
@@ -131,17 +51,13 @@ class BayEndFinder {
   // Beside the column at p, in a row of direction u; none where it is not likely.
   [[nodiscard]] std::optional<BayEnd> find(const Vector2d& p, const Vector2d& u,
                                            const Stand& stand) const {
-    const Vector2d n = leftOf(u);
+    const Corners usual = place(p, u, stand, Vector2d::Zero());
+    if (isTaken(usual, kSurely) || !hasSomePaint(usual, stand)) return std::nullopt;
     std::optional<Corners> best;
     double most = 0.0;
     for (const double along : {0.0, -0.1, 0.1, -0.2, 0.2}) {
       for (const double deep : {0.0, -0.1, 0.1, -0.2, 0.2, -0.3, 0.3}) {
-        const Vector2d corner = p + (stand.corner.x() + along) * u + (stand.corner.y() + deep) * n;
-        const Vector2d other = corner + (stand.is_right ? stand.front : -stand.front) * u;
-        const Vector2d side = stand.side.x() * u + stand.side.y() * n;
-        const Vector2d& left = stand.is_right ? corner : other;
-        const Vector2d& right = stand.is_right ? other : corner;
-        const Corners corners = {left, right, right + side, left + side};
+        const Corners corners = place(p, u, stand, {along, deep});
         const double score = fit(corners);
         if (score <= most) continue;
         most = score;
@@ -153,9 +69,35 @@ class BayEndFinder {
   }
 
  private:
-  static constexpr double kPast = 0.15;  // m, half a line and its error
-  static constexpr double kStandsOut =
-      3.9;  // one of two sides does, by chance one line in a hundred
+  static constexpr double kOverlap = 0.15;
+  static constexpr double kSurely = 0.4;  // too much of an overlap wherever it is shifted to
+  static constexpr double kPast = 0.15;   // m, half a line and its error
+  // One of two sides does, by chance one line in a hundred.
+  static constexpr double kStandsOut = 3.9;
+
+  static Corners place(const Vector2d& p, const Vector2d& u, const Stand& stand,
+                       const Vector2d& shift) {
+    const Vector2d n = leftOf(u);
+    const Vector2d at = stand.corner + shift;
+    const Vector2d corner = p + at.x() * u + at.y() * n;
+    const Vector2d other = corner + (stand.is_right ? stand.front : -stand.front) * u;
+    const Vector2d side = stand.side.x() * u + stand.side.y() * n;
+    const Vector2d& left = stand.is_right ? corner : other;
+    const Vector2d& right = stand.is_right ? other : corner;
+    return {left, right, right + side, left + side};
+  }
+
+  // Whether the side beside the column can stand out at all: most columns can be left at once.
+  [[nodiscard]] bool hasSomePaint(const Corners& c, const Stand& stand) const {
+    constexpr double kSome = 0.2;  // shifted along the line by 0.3 m it may be more
+    const Vector2d u = (c[1] - c[0]).normalized();
+    for (const double aside : {-0.2, 0.0, 0.2}) {
+      const Vector2d& front = stand.is_right ? c[0] : c[1];
+      const Vector2d& rear = stand.is_right ? c[3] : c[2];
+      if (lookAlong(grid_, front + aside * u, rear + aside * u).painted > kSome) return true;
+    }
+    return false;
+  }
 
   static double paintOf(const SlotEvidence::Line& line) {
     return std::max(0.0, line.contrast()) * line.seen_m;
@@ -179,21 +121,24 @@ class BayEndFinder {
     return sum;
   }
 
+  [[nodiscard]] bool isTaken(const Corners& c, double share) const {
+    constexpr double kFar = 12.0;  // m
+    return std::any_of(slots_.begin(), slots_.end(), [&](const MapSlot& slot) {
+      return (slot.corners[0] - c[0]).norm() < kFar && overlapShare(slot.corners, c) > share;
+    });
+  }
+
   // No known slot lies there, or where one would drive in.
   [[nodiscard]] bool hasRoom(const Corners& c) const {
-    constexpr double kFar = 12.0;  // m
-    constexpr double kOverlap = 0.15;
     constexpr double kAisle = 3.0;  // m
+    constexpr double kSome = 0.05;
     const Vector2d u = c[1] - c[0];
     Vector2d out = leftOf(u).normalized();
     if (out.dot(c[3] - c[0]) > 0.0) out = -out;
     const Vector2d left = c[0] + 0.2 * u + kPast * out;
     const Vector2d right = c[1] - 0.2 * u + kPast * out;
-    const Corners aisle = {left, right, right + kAisle * out, left + kAisle * out};
-    return std::none_of(slots_.begin(), slots_.end(), [&](const MapSlot& slot) {
-      return (slot.corners[0] - c[0]).norm() < kFar &&
-             (overlapShare(slot.corners, c) > kOverlap || overlapShare(slot.corners, aisle) > 0.05);
-    });
+    return !isTaken(c, kOverlap) &&
+           !isTaken({left, right, right + kAisle * out, left + kAisle * out}, kSome);
   }
 
   // Longer than a slot along the aisle is deep, and not beyond the entrance.
@@ -275,15 +220,7 @@ std::vector<MapSlot> findBayEnds(const std::vector<MapSlot>& slots,
                                  const SlotLikelihood& likelihood,
                                  const RowCompletionOptions& options) {
   const std::vector<Row> rows = findRows(slots);
-  const std::vector<std::vector<Pattern>> patterns = findPatterns(rows, slots, pillars);
-  std::vector<Stand> stands;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (const Pattern& pattern : patterns[i]) {
-      if (pattern.of_row && pattern.shape != SlotShape::kParallel)
-        gatherStands(rows[i], pattern, slots, pillars, stands);
-    }
-  }
-  stands = commonOf(std::move(stands));
+  const std::vector<Stand> stands = learnStands(rows, slots, pillars);
   const BayEndFinder finder(slots, grid, likelihood, options);
   std::vector<BayEnd> ends;
   for (const Vector2d& u : directionsOf(rows)) {
