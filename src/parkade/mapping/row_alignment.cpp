@@ -10,6 +10,7 @@
 #include "parkade/core/median.hpp"
 #include "parkade/geometry/planar.hpp"
 #include "parkade/mapping/row_evidence.hpp"
+#include "parkade/mapping/slot_row.hpp"
 
 namespace parkade::slot_rows {
 namespace {
@@ -159,16 +160,6 @@ MapSlot squared(const MapSlot& slot) {
   return square;
 }
 
-bool isInRow(const MapSlot& slot, const MapSlot& other) {
-  constexpr double kParallel = 0.9945;  // cosine of 6 degrees
-  constexpr double kOff = 0.35;         // m
-  constexpr double kNear = 14.0;        // m
-  const Vector2d between = other.entrance() - slot.entrance();
-  const Vector2d inward = inwardOf(slot);
-  return inward.dot(inwardOf(other)) > kParallel && between.norm() < kNear &&
-         std::abs(between.dot(inward)) < kOff;
-}
-
 bool hasSides(const MapSlot& slot, const LayeredGrid& grid) {
   constexpr double kHalf = 0.5;
   const SlotEvidence evidence = gatherEvidence(grid, slot.corners);
@@ -186,7 +177,7 @@ SquaredSlots squareSlots(std::vector<MapSlot>& slots, const LayeredGrid& grid) {
     if (!isMisread(given[i], *axis)) continue;
     const MapSlot square = squared(given[i]);
     const auto isItsRow = [&](const MapSlot& other) {
-      return !isMisread(other, *axis) && isInRow(square, other);
+      return !isMisread(other, *axis) && areInOneRow(square, other);
     };
     if (std::any_of(given.begin(), given.end(), isItsRow) || hasSides(square, grid)) {
       slots[i] = square;

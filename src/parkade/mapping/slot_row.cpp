@@ -22,17 +22,6 @@ Vector2d frontOf(const MapSlot& slot) {
   return slot.corners[1] - slot.corners[0];
 }
 
-bool areInOneRow(const MapSlot& a, const MapSlot& b) {
-  constexpr double kParallel = 0.9945;  // cosine of 6 degrees
-  constexpr double kOff = 0.35;         // m
-  constexpr double kApart = 14.0;       // m
-  const Vector2d u = frontOf(a).normalized();
-  const Vector2d v = frontOf(b).normalized();
-  const Vector2d between = b.entrance() - a.entrance();
-  return u.dot(v) > kParallel && between.norm() < kApart &&
-         std::abs(cross((u + v).normalized(), between)) < kOff;
-}
-
 double weightOf(const MapSlot& slot) {
   constexpr double kFloor = 0.03;  // m: neighbours' corners lie no better in one line
   return 1.0 / (slot.corner_sigma * slot.corner_sigma + kFloor * kFloor);
@@ -225,6 +214,17 @@ std::vector<Margin> marginsOf(SlotShape shape, const std::array<Margins, kShapes
 }
 
 }  // namespace
+
+bool areInOneRow(const MapSlot& a, const MapSlot& b) {
+  constexpr double kParallel = 0.9945;  // cosine of 6 degrees
+  constexpr double kOff = 0.35;         // m
+  constexpr double kApart = 14.0;       // m
+  const Vector2d u = frontOf(a).normalized();
+  const Vector2d v = frontOf(b).normalized();
+  const Vector2d between = b.entrance() - a.entrance();
+  return u.dot(v) > kParallel && between.norm() < kApart &&
+         std::abs(cross((u + v).normalized(), between)) < kOff;
+}
 
 std::vector<Row> findRows(const std::vector<MapSlot>& slots) {
   std::vector<std::size_t> root(slots.size());

@@ -29,6 +29,9 @@ struct Row {
   [[nodiscard]] Eigen::Vector2d at(double s) const { return origin + s * u; }
 };
 
+/// Whether both are entered the same way (6 degrees), over one line (0.35 m), 14 m apart at most.
+bool areInOneRow(const MapSlot& a, const MapSlot& b);
+
 std::vector<Row> findRows(const std::vector<MapSlot>& slots);
 
 /// Room that slots leave beside pillars.
