@@ -84,6 +84,23 @@ class BenchErrorTest(unittest.TestCase):
         self.assertEqual(result.returncode, 0)
         self.assertIn("--samples", result.stdout)
 
+    def test_texts_to_learn_reading_from(self):
+        result = bench("semantics", "--out", self.out, "--texts")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("--texts needs --samples", result.stderr)
+        result = bench("semantics", "--garages", "random:2140-2140", "--samples", self.out, "--texts",
+                       "--fast", "--set", "frames=2", "--set", "coarse_light=true")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        kinds = set()
+        for path in self.out.glob("g2140/*_texts.csv"):
+            lines = path.read_text().splitlines()
+            self.assertEqual(lines[0], "text,height_px,slant_deg,distance_m,kind")
+            strip = path.with_suffix(".png").read_bytes()
+            height = int.from_bytes(strip[20:24], "big")
+            self.assertEqual(height, 40 * (len(lines) - 1))
+            kinds |= {line.split(",")[4] for line in lines[1:]}
+        self.assertLessEqual({"true", "shaken", "network"}, kinds)
+
 
 class PageParser(html.parser.HTMLParser):
     """Gathers what a page would load, and tags left open."""

@@ -4,6 +4,7 @@
 """Makes training samples with the simulator: stitched pictures and camera views with their labels.
 
     tools/train/make_data.py --program build/release/parkade --out DATA --garages 0-99
+    tools/train/make_data.py --out TEXTS --garages 2000-2131 --frames 8 --texts
 
 Every garage has its own layout, style, light, occupancy, people, rig and attitude errors, drawn from
 its seed. Goes on where an earlier call ended. Seeds from 5000 on are kept for tests.
@@ -36,6 +37,8 @@ def main():
     parser.add_argument("--out", required=True, help="folder of samples")
     parser.add_argument("--garages", default="0-99", help="FIRST-LAST garage seeds")
     parser.add_argument("--frames", type=int, default=16, help="frame sets per garage [16]")
+    parser.add_argument("--texts", action="store_true",
+                        help="straightened texts to learn reading from instead of pictures")
     arguments = parser.parse_args()
     first, last = (int(text) for text in arguments.garages.split("-"))
     if last >= 5000:
@@ -47,6 +50,8 @@ def main():
                    "--samples", arguments.out]
         for name, value in settings(seed, arguments.frames).items():
             command += ["--set", f"{name}={value}"]
+        if arguments.texts:
+            command.append("--texts")
         start = time.time()
         result = subprocess.run(command, capture_output=True, text=True)
         print(f"garage {seed}: {'ok' if result.returncode == 0 else result.stderr.strip()[-300:]}, "

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Parkade authors
 # SPDX-License-Identifier: Apache-2.0
-"""Faces of zone markers to learn reading from: rendered ones, and those that make_data.py wrote."""
+"""Texts to learn reading from: rendered faces, and what make_data.py --texts wrote: faces of zone
+markers and numbers in slots."""
 import csv
 import glob
 import os
@@ -146,12 +147,18 @@ def normalised(pixels, width):
     return out
 
 
-class Crops:
-    """Faces that the simulator drew, straightened by the program."""
+NUMBERS = ("number", "turned")
+NUMBERS_WEIGHT = 3.0  # they are fewer than faces, and read from one view each
 
-    def __init__(self, folder, wanted):
-        self.patches, self.texts, self.heights, self.distances = [], [], [], []
-        for path in sorted(glob.glob(os.path.join(folder, "g*", "*_texts.csv"))):
+
+class Crops:
+    """Faces and numbers that the simulator drew, straightened by the program. kinds: what they were
+    cut out by (parkade bench semantics --texts)."""
+
+    def __init__(self, folders, wanted):
+        self.patches, self.texts, self.heights, self.distances, self.kinds = [], [], [], [], []
+        for path in sorted(path for folder in folders
+                           for path in glob.glob(os.path.join(folder, "g*", "*_texts.csv"))):
             if not wanted(int(os.path.basename(os.path.dirname(path))[1:])):
                 continue
             with open(path) as file:
@@ -162,11 +169,14 @@ class Crops:
                 self.texts.append(row["text"])
                 self.heights.append(float(row["height_px"]))
                 self.distances.append(float(row["distance_m"]))
+                self.kinds.append(row["kind"])
         self.heights, self.distances = np.array(self.heights), np.array(self.distances)
-        has_text = np.array([bool(text) for text in self.texts])
+        self.kinds = np.array(self.kinds)
+        has_text = np.array([bool(text) for text in self.texts], bool)
+        number = np.isin(self.kinds, NUMBERS)
         # Far faces cannot be read; plain ones are many.
-        useful = (self.heights > 9.0) & (~has_text | (self.distances < 16.0))
-        self.weights = useful * np.where(has_text, 1.0, 0.35)
+        useful = number | ((self.heights > 9.0) & (~has_text | (self.distances < 16.0)))
+        self.weights = useful * np.where(number, NUMBERS_WEIGHT, np.where(has_text, 1.0, 0.35))
         if self.weights.sum() > 0:
             self.weights = self.weights / self.weights.sum()
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The Parkade authors
 # SPDX-License-Identifier: Apache-2.0
-"""Trains the reader of zone texts on rendered faces and on those of make_data.py.
+"""Trains the reader of zone texts and slots' numbers on rendered faces and on make_data.py --texts.
 
-    tools/train/train_text.py --data DATA --out RUN
+    tools/train/train_text.py --data TEXTS --out RUN
 
 Writes RUN/text.pt. Garages whose seed ends in 3 are kept for validation; without --data it learns
 from rendered faces alone. --check FILE only scores a state.
@@ -34,16 +34,16 @@ def render_many(rng, count):
 
 
 def loss_of(rng, network, drawn, crops, size):
-    """Half of a batch from each source: rendered faces by column, since their letters' places are
-    known, which starts the learning; the simulator's as sequences."""
-    chosen = [drawn[i] for i in rng.integers(len(drawn), size=size // 2)]
+    """A third of a batch are rendered faces, learnt by column, since their letters' places are known,
+    which starts the learning; the others are the simulator's, as sequences."""
+    chosen = [drawn[i] for i in rng.integers(len(drawn), size=size // 3 if len(crops) else size)]
     patches, middles = [], []
     for patch, _, columns in chosen:
         patch, moved = augmented(rng, patch)
         points = np.stack([columns, np.full(len(columns), 20.0), np.ones(len(columns))])
         patches.append(patch)
         middles.append((moved @ points)[0])
-    picked = rng.choice(len(crops), size - size // 2, p=crops.weights) if len(crops) else []
+    picked = rng.choice(len(crops), size - len(chosen), p=crops.weights) if len(crops) else []
     patches += [augmented(rng, crops.patches[i])[0] for i in picked]
     logits = network(to_input(np.stack(patches)))
     half = len(chosen)
@@ -62,24 +62,27 @@ def accuracy(network, patches, texts):
 
 
 def report(network, crops, drawn):
-    """Share read rightly: rendered faces; faces of the validation garages by distance."""
+    """Share read rightly: rendered faces; faces of the validation garages by distance, and numbers."""
     right, _ = accuracy(network, [p for p, _, _ in drawn], [t for _, t, _ in drawn])
     text = f"rendered {right.mean():.3f}"
     if len(crops):
         right, found = accuracy(network, crops.patches, crops.texts)
-        has_text = np.array([bool(t) for t in crops.texts])
+        number = crops.kinds == "number"
+        turned = crops.kinds == "turned"
+        has_text = np.array([bool(t) for t in crops.texts]) & ~number
         for low, high in ((0, 6), (6, 10), (10, 15)):
             chosen = has_text & (crops.distances >= low) & (crops.distances < high)
             text += f", {low}-{high} m {right[chosen].mean():.3f} of {chosen.sum()}"
-        plain = ~has_text & (crops.heights > 9.0)
-        text += f", plain {right[plain].mean():.3f} of {plain.sum()}"
+        plain = ~has_text & ~number & ~turned & (crops.heights > 9.0)
+        for name, chosen in (("plain", plain), ("numbers", number), ("upside down", turned)):
+            text += f", {name} {right[chosen].mean():.3f} of {chosen.sum()}"
     return text
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--data", help="folder of make_data.py")
+    parser.add_argument("--data", nargs="*", default=[], help="folders of make_data.py --texts")
     parser.add_argument("--out", help="folder for text.pt")
     parser.add_argument("--check", help="only score this text.pt or exported .onnx")
     parser.add_argument("--steps", type=int, default=3000)
@@ -102,16 +105,16 @@ def main():
         if a.warm_start.endswith(".onnx"):
             faces = [patch for patch, _, _ in render_many(rng, 512)]
             settle(network, [to_input(np.stack(faces))])
-    held_back = Crops(a.data or "", is_validation)
+    held_back = Crops(a.data, is_validation)
     drawn_check = render_many(np.random.default_rng(a.seed + 1000), 1000)
     if a.check:
         network.load_state_dict(load(a.check, network))
         print(report(network.eval(), held_back, drawn_check))
         return
     os.makedirs(a.out, exist_ok=True)
-    crops = Crops(a.data or "", lambda garage: not is_validation(garage))
+    crops = Crops(a.data, lambda garage: not is_validation(garage))
     drawn = render_many(rng, a.rendered)
-    print(f"{len(crops)} faces, {len(held_back)} for validation, {len(drawn)} rendered; "
+    print(f"{len(crops)} faces and numbers, {len(held_back)} for validation, {len(drawn)} rendered; "
           f"{sum(p.numel() for p in network.parameters())} parameters", flush=True)
     optimiser = torch.optim.AdamW(network.parameters(), lr=a.rate, weight_decay=1e-2)
     schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, a.rate, a.steps, pct_start=0.1)

@@ -16,7 +16,7 @@
 #include "parkade/cli/semantic_garages.hpp"
 #include "parkade/cli/semantic_samples.hpp"
 #include "parkade/cli/sim_record.hpp"
-#include "parkade/cli/zone_text_samples.hpp"
+#include "parkade/cli/text_samples.hpp"
 #include "parkade/core/progress.hpp"
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
@@ -35,7 +35,8 @@ constexpr const char* kSemanticsFooter =
     "  parkade bench semantics --garages random:20 --out DIR\n"
     "  parkade bench semantics --garages random:3 --out DIR --pictures --network mine.yaml\n"
     "  parkade bench semantics --marking-points PS2.0 --out DIR --pictures\n"
-    "  parkade bench semantics --garages random:0-99 --samples DATA   (training data)";
+    "  parkade bench semantics --garages random:0-99 --samples DATA   (training data)\n"
+    "  parkade bench semantics --garages random:0-99 --samples TEXTS --texts";
 
 struct BenchArguments {
   std::string garages = "random:20";
@@ -44,6 +45,7 @@ struct BenchArguments {
   std::string marking_points;
   bool pictures = false;
   bool fast = false;
+  bool texts = false;
   int threads = defaultThreads();
   SegmentationScoreOptions segmentation;
   std::string labels = "network";
@@ -99,10 +101,16 @@ Status writeSample(const SemanticSampler& sampler, const SemanticSample& sample,
     labels = sampler.cameraLabels(sample, camera);
     labels.setTo(kNotSeen, sampler.bodyMask(camera) == 0);
     if (status) status = writeImage(fmt::format("{}_raw{}_labels.png", stem, k), labels, png);
-    if (status) {
-      status = writeZoneTexts(sampler, sample, camera, sampler.cameraLabels(sample, camera),
-                              fmt::format("{}_raw{}", stem, k));
-    }
+  }
+  return status;
+}
+
+// What all cameras show of texts, as files.
+Status writeTexts(TextSampler& texts, const SemanticSampler& sampler, const SemanticSample& sample,
+                  const std::string& stem) {
+  Status status;
+  for (std::size_t i = 0; status && i < sample.frames.images.size(); ++i) {
+    status = texts.write(sampler, sample, static_cast<int>(i), fmt::format("{}_cam{}", stem, i));
   }
   return status;
 }
@@ -112,6 +120,8 @@ Status writeSamples(const BenchArguments& arguments, const std::vector<int>& see
   const auto done = [&] {
     return folder.empty() ? Status() : writeFileAtomic(joinPath(folder, "done"), "");
   };
+  Result<TextSampler> texts = TextSampler::make(arguments.segmentation.raw_network);
+  if (!texts) return texts.error();
   const Status status = drawAll(
       arguments, seeds, arguments.samples,
       [&](const SemanticSampler& sampler) {
@@ -122,8 +132,9 @@ Status writeSamples(const BenchArguments& arguments, const std::vector<int>& see
         return makeFolders(folder);
       },
       [&](const SemanticSampler& sampler, const SemanticSample& sample) {
-        return writeSample(sampler, sample,
-                           joinPath(folder, fmt::format("{:03d}", sample.frames.index)));
+        const std::string stem = joinPath(folder, fmt::format("{:03d}", sample.frames.index));
+        return arguments.texts ? writeTexts(*texts, sampler, sample, stem)
+                               : writeSample(sampler, sample, stem);
       });
   return status ? done() : status;
 }
@@ -213,6 +224,13 @@ int run(BenchArguments& arguments) {
   if (arguments.out.empty() == arguments.samples.empty()) {
     return fail({"bench semantics: give --out DIR for scores, or --samples DIR for training data"});
   }
+  if (arguments.texts && arguments.samples.empty()) {
+    return fail({"bench semantics: --texts needs --samples DIR"});
+  }
+  if (!arguments.options.stitched && !arguments.texts) {
+    return fail({"bench semantics: stitched=false serves --texts alone"});
+  }
+  if (arguments.texts) arguments.options.stitched = false;
   const Status status =
       arguments.samples.empty() ? score(arguments, *seeds) : writeSamples(arguments, *seeds);
   return status ? 0 : fail(status.error());
@@ -247,6 +265,9 @@ void addBenchSemantics(CLI::App& bench, int& exit_code) {
                     "Write every picture, with found and with true labels, to DIR/pictures");
   command->add_option("--samples", arguments->samples, "Write training samples instead of scores")
       ->type_name("DIR");
+  command->add_flag("--texts", arguments->texts,
+                    "With --samples: straightened zone markers and slots' numbers with their texts "
+                    "instead of pictures with labels");
   command
       ->add_option("--marking-points", arguments->marking_points,
                    "Score slots' corners on marked real pictures instead: 10 m wide, with "

@@ -203,6 +203,7 @@ SemanticSample SemanticSampler::draw(int index) {
   sample.attitude.roll = sample.true_attitude.roll + random.normal(0.0, sigma);
   sample.attitude.height =
       sample.true_attitude.height + random.normal(0.0, 0.01 * options_.height_error_cm);
+  if (!options_.stitched) return sample;
   sample.bev = stitcher_->stitch(sample.frames, sample.attitude);
   sample.bev_labels = withoutSpecks(labelPicture(sample, *moment), sample.bev.valid);
   return sample;

@@ -24,6 +24,7 @@ struct SampleOptions {
   double shift_m = 0.0;
   bool masks = true;
   bool coarse_light = false;
+  bool stitched = true;
 
   void visit(OptionVisitor& v) {
     v.field("frames", frames, "count", "Frame sets per drive, evenly along the way.", 1, 100000);
@@ -38,6 +39,7 @@ struct SampleOptions {
             10.0);
     v.field("masks", masks, "Whether the stitcher knows where the own body is in sight.");
     v.field("coarse_light", coarse_light, "Bake the light coarsely: faster, for training.");
+    v.field("stitched", stitched, "Whether the stitched picture and its labels are made.");
   }
 };
 
@@ -48,7 +50,8 @@ struct SemanticSample {
   SE3 T_world_vehicle;
   GroundAttitude attitude;       ///< that the picture was stitched with
   GroundAttitude true_attitude;  ///< of the floor around the car
-  BevImage bev;                  ///< stitched by the program, own car and unseen places black
+  BevImage bev;                  ///< stitched by the program, own car and unseen places black;
+                                 ///< empty where none is wanted
   cv::Mat bev_labels;            ///< CV_8UC1: what each of its pixels shows; kUnknown: not valid
 };
 

@@ -10,11 +10,13 @@
 namespace parkade::cli {
 namespace {
 
-// Share of a sign's area that the labels show as a marker.
+constexpr int kAcross = 9;
+constexpr int kUp = 5;
+constexpr double kPlaces = kAcross * kUp;
+
+// Share of a sign's area that the labels show as a marker; and where it is in the picture.
 double shareInSight(const sim::Sign& sign, const SE3& T_cam_world, const Camera& camera,
-                    const cv::Mat& labels) {
-  constexpr int kAcross = 9;
-  constexpr int kUp = 5;
+                    const cv::Mat& labels, std::vector<Eigen::Vector2d>& places) {
   int seen = 0;
   for (int i = 0; i < kAcross; ++i) {
     for (int j = 0; j < kUp; ++j) {
@@ -22,13 +24,23 @@ double shareInSight(const sim::Sign& sign, const SE3& T_cam_world, const Camera&
                                    ((j + 0.5) / kUp - 0.5) * sign.height, 0.0);
       Eigen::Vector2d pixel;
       if (!camera.project(T_cam_world * (sign.T_world_sign * p_sign), pixel)) continue;
+      places.push_back(pixel);
       if (!camera.inImage(pixel, 1.0)) continue;
       const auto label = labels.at<std::uint8_t>(static_cast<int>(std::lround(pixel.y())),
                                                  static_cast<int>(std::lround(pixel.x())));
       seen += label == static_cast<std::uint8_t>(SemanticClass::kZoneMarker) ? 1 : 0;
     }
   }
-  return static_cast<double>(seen) / (kAcross * kUp);
+  return seen / kPlaces;
+}
+
+bool isInside(const Eigen::Vector2d& pixel, const std::array<Eigen::Vector2d, 4>& corners) {
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Eigen::Vector2d along = corners[(k + 1) % 4] - corners[k];
+    const Eigen::Vector2d to = pixel - corners[k];
+    if (along.x() * to.y() - along.y() * to.x() < 0.0) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -57,7 +69,7 @@ std::vector<TrueZoneText> trueZoneTexts(const SemanticSampler& sampler,
       continue;
     }
     text.height_px = 2.0 * (top - text.middle).norm();
-    text.in_sight = shareInSight(sign, T_cam_world, eye.camera, labels);
+    text.in_sight = shareInSight(sign, T_cam_world, eye.camera, labels, text.places);
     texts.push_back(text);
   }
   return texts;
@@ -69,19 +81,20 @@ const TrueZoneText* textWithin(const std::vector<TrueZoneText>& texts,
   const TrueZoneText* best = nullptr;
   double nearest = 1e9;
   for (const TrueZoneText& text : texts) {
-    bool inside = true;
-    for (std::size_t k = 0; k < 4; ++k) {
-      const Eigen::Vector2d along = corners[(k + 1) % 4] - corners[k];
-      const Eigen::Vector2d to = text.middle - corners[k];
-      inside = inside && along.x() * to.y() - along.y() * to.x() >= 0.0;
-    }
     const double distance = (text.middle - middle).norm();
     // Hidden texts behind a nearer marker share its place in the picture.
-    if (!inside || distance >= nearest || text.in_sight <= 0.0) continue;
+    if (!isInside(text.middle, corners) || distance >= nearest || text.in_sight <= 0.0) continue;
     nearest = distance;
     best = &text;
   }
   return best;
+}
+
+double shareWithin(const TrueZoneText& text, const std::array<Eigen::Vector2d, 4>& corners) {
+  return static_cast<double>(std::count_if(
+             text.places.begin(), text.places.end(),
+             [&](const Eigen::Vector2d& place) { return isInside(place, corners); })) /
+         kPlaces;
 }
 
 cv::Mat atNetworkSize(const cv::Mat& labels) {

@@ -20,6 +20,7 @@ struct TrueZoneText {
   double in_sight = 0.0;  ///< share of its area that is in the picture and not hidden
   double height_px = 0.0;
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();  ///< px
+  std::vector<Eigen::Vector2d> places;               ///< px, spread evenly over it
 };
 
 /// The zone texts that face a camera of a sample within `reach` metres, hidden ones too. labels:
@@ -32,6 +33,9 @@ std::vector<TrueZoneText> trueZoneTexts(const SemanticSampler& sampler,
 /// its middle; null where there is none.
 const TrueZoneText* textWithin(const std::vector<TrueZoneText>& texts,
                                const std::array<Eigen::Vector2d, 4>& corners);
+
+/// Share of a text's area that lies in a quadrilateral (corners in order).
+double shareWithin(const TrueZoneText& text, const std::array<Eigen::Vector2d, 4>& corners);
 
 /// Labels of the size that the view network gives, taken from full ones.
 cv::Mat atNetworkSize(const cv::Mat& labels);
