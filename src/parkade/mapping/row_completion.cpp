@@ -122,17 +122,22 @@ class RowCompleter {
     return added;
   }
 
-  // Sides of two bays with a gap between them look like a slot along the aisle; such ones stand in
-  // no row, and few pictures take them for one.
+  // Sides of two bays with a gap between them look like a slot along the aisle; such ones have no
+  // like in their row, and few pictures take them for one.
   void dropLonelySlots(const std::vector<MapSlot>& added) {
     constexpr int kFewLooks = 8;
     const std::vector<MapSlot> known = knownWith(added);
     std::set<std::int64_t> lonely;
     for (const Row& row : slot_rows::findRows(known)) {
-      const MapSlot& slot = known[row.members.front().slot];
-      if (row.members.size() == 1 && slot.shape == SlotShape::kParallel &&
-          slot.observations < kFewLooks && slot.id != 0) {
-        lonely.insert(slot.id);
+      const MapSlot* along = nullptr;
+      int parallel = 0;
+      for (const Member& member : row.members) {
+        if (known[member.slot].shape != SlotShape::kParallel) continue;
+        along = &known[member.slot];
+        ++parallel;
+      }
+      if (parallel == 1 && along->observations < kFewLooks && along->id != 0) {
+        lonely.insert(along->id);
       }
     }
     for (std::size_t i = 0; i < told_.size(); ++i) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "parkade/mapping/map_check.hpp"
@@ -207,6 +208,25 @@ TEST(RowCompletion, ALonelySlotAlongTheAisleMustBeSeenOften) {
   EXPECT_TRUE(garage.complete().replaced.empty());
   garage.told.back().observations = 4;
   EXPECT_EQ(garage.complete().replaced, std::vector<std::int64_t>{77});
+}
+
+TEST(RowCompletion, ASlotAlongTheAisleIsAloneAmongBaysToo) {
+  Garage garage;
+  garage.tell(0, {0, 1, 2});
+  garage.paintTold();
+  MapSlot along = Garage::slotAt(0, 0);
+  along.id = 77;
+  along.shape = SlotShape::kParallel;
+  const Vector2d u = (along.corners[1] - along.corners[0]).normalized();
+  const Vector2d inwards = (along.corners[3] - along.corners[0]).normalized();
+  const Vector2d left = Garage::slotAt(0, 2).corners[1] + 4.0 * u;
+  along.corners = {left, left + 6.0 * u, left + 6.0 * u + 2.2 * inwards, left + 2.2 * inwards};
+  along.observations = 4;
+  garage.told.push_back(along);
+  const std::vector<std::int64_t> replaced = garage.complete().replaced;
+  EXPECT_EQ(std::count(replaced.begin(), replaced.end(), 77), 1);
+  garage.told.back().observations = 20;
+  EXPECT_TRUE(garage.complete().replaced.empty());
 }
 
 TEST(RowCompletion, MovesAnEntranceToItsRow) {
