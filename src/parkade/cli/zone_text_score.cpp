@@ -16,7 +16,7 @@
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
 #include "parkade/semantics/segmentation.hpp"
-#include "parkade/semantics/zone_marker_faces.hpp"
+#include "parkade/semantics/zone_marker_views.hpp"
 #include "parkade/semantics/zone_text_reader.hpp"
 #include "parkade/types/level_frame.hpp"
 
@@ -118,10 +118,10 @@ class ZoneTextScore : public SampleScore {
         trueZoneTexts(sampler, sample, camera, true_labels, 1.5 * kTextReach);
     std::vector<Read> reads;
     for (const ZoneMarkerSight& sight : sights) {
-      for (const ZoneMarkerFace& face : sight.faces) {
-        Result<std::vector<TextReading>> readings = reader_.read(face.patch);
-        if (!readings) return readings.error();
-        reads.push_back({&face, textWithin(texts, face.corners), readings->front()});
+      Result<std::vector<ReadFace>> faces = readFaces(sight, reader_);
+      if (!faces) return faces.error();
+      for (const ReadFace& read : *faces) {
+        reads.push_back({read.face, textWithin(texts, read.face->corners), read.readings.front()});
       }
     }
     count(texts, reads);

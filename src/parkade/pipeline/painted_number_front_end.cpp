@@ -28,13 +28,6 @@ struct Seen {
 // Readings of one piece of worn paint repeat their errors: doubtful ones must not add up.
 constexpr double kLikely = 0.5;
 
-double certainty(const std::vector<TextReading>& readings) {
-  for (const TextReading& reading : readings) {
-    if (!reading.text.empty()) return reading.probability;
-  }
-  return 0.0;
-}
-
 }  // namespace
 
 struct PaintedNumberFrontEnd::Impl {
@@ -89,7 +82,8 @@ struct PaintedNumberFrontEnd::Impl {
     if (!entering) return entering;
     auto leaving = reader.read(turned, options.letters);
     if (!leaving) return leaving;
-    const double step = std::log((certainty(*entering) + kLeast) / (certainty(*leaving) + kLeast));
+    const double step =
+        std::log((certaintyOf(*entering) + kLeast) / (certaintyOf(*leaving) + kLeast));
     const bool enters = upright + step > 0.0;
     upright = std::clamp(upright + std::clamp(step, -kStep, kStep), -kMost, kMost);
     return enters ? entering : leaving;
@@ -147,7 +141,7 @@ Status PaintedNumberFrontEnd::Impl::readSlots(const FrameSet& frames, const BevV
   for (const Seen& seen : all) {
     Result<std::vector<TextReading>> readings = read(straighten(seen, frames, T_level_vehicle));
     if (!readings) return readings.error();
-    if (certainty(*readings) < kLikely) continue;
+    if (certaintyOf(*readings) < kLikely) continue;
     frame.objects[seen.number.object].text = readings->front().text;
     SlotObservation& slot = frame.slots[*seen.number.slot];
     slot.number = std::move(readings).value();
@@ -186,7 +180,7 @@ Result<std::vector<TextReading>> PaintedNumberFrontEnd::Impl::readTurned(
       return std::find(limit_values.begin(), limit_values.end(), reading.text) ==
              limit_values.end();
     });
-    if (certainty(*readings) > certainty(surest)) surest = std::move(readings).value();
+    if (certaintyOf(*readings) > certaintyOf(surest)) surest = std::move(readings).value();
   }
   return surest;
 }
@@ -207,7 +201,7 @@ Status PaintedNumberFrontEnd::Impl::readLimits(const FrameSet& frames, const Bev
     if (moved && limit.readings < kReadings) {
       auto readings = readTurned(i, frames, views, T_level_vehicle, frame);
       if (!readings) return readings.error();
-      if (certainty(*readings) >= kLikely) {
+      if (certaintyOf(*readings) >= kLikely) {
         limit.read_from = place;
         ++limit.readings;
         limit.text.add(*readings);

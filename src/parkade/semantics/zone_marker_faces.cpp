@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 #include <optional>
 
 #include "parkade/core/check.hpp"
+#include "parkade/semantics/zone_marker_blobs.hpp"
 #include "parkade/semantics/zone_marker_outline.hpp"
 #include "parkade/semantics/zone_marker_patch.hpp"
 #include "parkade/types/semantic_class.hpp"
@@ -22,59 +22,6 @@ struct Search {
   bool straightened = true;  ///< its faces bear text
   double share = 1.0;        ///< of the height, about the middle, that bears it
 };
-
-/// One connected patch of marker labels and what stands around it.
-struct Blob {
-  std::vector<cv::Point> pixels;
-  cv::Rect box;
-  int covered = 0;        ///< pixels beside something that may hide a part
-  int covered_aside = 0;  ///< of these, left or right of one
-};
-
-bool mayHide(std::uint8_t label) {
-  return label == static_cast<std::uint8_t>(SemanticClass::kVehicle) ||
-         label == static_cast<std::uint8_t>(SemanticClass::kPedestrian);
-}
-
-std::vector<Blob> findBlobs(const cv::Mat& labels, const cv::Mat& mask, SemanticClass wanted,
-                            int min_pixels) {
-  cv::Mat components;
-  cv::Mat stats;
-  cv::Mat centroids;
-  const int count = cv::connectedComponentsWithStats(labels == static_cast<int>(wanted), components,
-                                                     stats, centroids, 8, CV_32S);
-  std::vector<Blob> blobs;
-  for (int i = 1; i < count; ++i) {
-    if (stats.at<int>(i, cv::CC_STAT_AREA) < min_pixels) continue;
-    Blob blob;
-    blob.box = {stats.at<int>(i, cv::CC_STAT_LEFT), stats.at<int>(i, cv::CC_STAT_TOP),
-                stats.at<int>(i, cv::CC_STAT_WIDTH), stats.at<int>(i, cv::CC_STAT_HEIGHT)};
-    const cv::Rect inside(0, 0, labels.cols, labels.rows);
-    for (int v = blob.box.y; v < blob.box.br().y; ++v) {
-      for (int u = blob.box.x; u < blob.box.br().x; ++u) {
-        if (components.at<int>(v, u) != i) continue;
-        blob.pixels.emplace_back(u, v);
-        for (const cv::Point& step : {cv::Point(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
-          const cv::Point next = cv::Point(u, v) + step;
-          bool covered = !inside.contains(next);
-          if (!covered) {
-            const bool own_car =
-                !mask.empty() && mask.at<std::uint8_t>(next.y * mask.rows / labels.rows,
-                                                       next.x * mask.cols / labels.cols) == 0;
-            covered = own_car || mayHide(labels.at<std::uint8_t>(next));
-          }
-          if (!covered) continue;
-          ++blob.covered;
-          blob.covered_aside += step.x != 0 ? 1 : 0;
-        }
-      }
-    }
-    blobs.push_back(std::move(blob));
-  }
-  std::stable_sort(blobs.begin(), blobs.end(),
-                   [](const Blob& a, const Blob& b) { return a.box.height > b.box.height; });
-  return blobs;
-}
 
 /// The outline's columns, one pixel of the label picture wide.
 struct FaceOutline {
@@ -149,7 +96,7 @@ struct MeasuredSight {
   FittedMarker marker;
 };
 
-std::optional<MeasuredSight> measure(const Blob& blob, const LabelScale& labels,
+std::optional<MeasuredSight> measure(const MarkerBlob& blob, const LabelScale& labels,
                                      const Camera& camera, const SO3& R_level_cam, bool corners) {
   const cv::Rect& box = blob.box;
   const Eigen::Vector2d at(box.x + 0.5 * (box.width - 1), box.y + 0.5 * (box.height - 1));
@@ -218,18 +165,25 @@ std::vector<ZoneMarkerSight> find(const cv::Mat& labels, const cv::Mat& image, c
                           static_cast<double>(image.rows) / labels.rows}};
   std::vector<ZoneMarkerSight> sights;
   int faces = 0;
-  for (const Blob& blob : findBlobs(labels, mask, search.semantic_class, options.min_label_px)) {
+  for (const MarkerBlob& blob :
+       findMarkerBlobs(labels, mask, search.semantic_class, options.min_label_px)) {
     std::optional<MeasuredSight> found = measure(blob, scale, camera, R_level_cam, search.corners);
     if (!found) continue;
-    for (const FittedFace& face : found->marker.faces) {
-      if (!found->sight.legible || !search.straightened || faces >= options.max_faces) break;
-      if (face.slant() > options.max_slant_deg * M_PI / 180.0) continue;
-      ZoneMarkerFace straight = straighten(image, found->view, middleOf(face, search.share),
-                                           found->marker.middle / search.share);
-      if (straight.height_px < options.min_height_px || straight.patch.empty()) continue;
-      found->sight.faces.push_back(std::move(straight));
-      ++faces;
-    }
+    const auto straightened = [&](const std::vector<FittedFace>& fitted) {
+      std::vector<ZoneMarkerFace> out;
+      for (const FittedFace& face : fitted) {
+        if (!found->sight.legible || !search.straightened || faces >= options.max_faces) break;
+        if (face.slant() > options.max_slant_deg * M_PI / 180.0) continue;
+        ZoneMarkerFace straight = straighten(image, found->view, middleOf(face, search.share),
+                                             found->marker.middle / search.share);
+        if (straight.height_px < options.min_height_px || straight.patch.empty()) continue;
+        out.push_back(std::move(straight));
+        ++faces;
+      }
+      return out;
+    };
+    found->sight.faces = straightened(found->marker.faces);
+    found->sight.other_faces = straightened(found->marker.other_faces);
     sights.push_back(std::move(found->sight));
   }
   return sights;

@@ -19,7 +19,7 @@ struct ZoneMarkerFaceOptions {
   int min_label_px = 10;
   double min_height_px = 10.0;
   double max_slant_deg = 68.0;
-  int max_faces = 6;
+  int max_faces = 10;
 
   void visit(OptionVisitor& v) {
     v.field("min_label_px", min_label_px, "px", "Smaller patches of labels are no marker.", 1,
@@ -55,6 +55,8 @@ struct ZoneMarkerSight {
   bool legible = false;       ///< not cut at its sides: its text may be whole
   cv::Rect box;               ///< in the label picture
   std::vector<ZoneMarkerFace> faces;  ///< from left to right; those that can be read
+  /// The other way to part the outline into faces, where it explains it nearly as well.
+  std::vector<ZoneMarkerFace> other_faces;
 };
 
 /// Finds zone markers in the labels of a camera's picture and straightens their faces.

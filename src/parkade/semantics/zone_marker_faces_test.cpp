@@ -84,6 +84,17 @@ TEST(ZoneMarkerOutline, NoiseDoesNotMakeEdges) {
   EXPECT_LE(split, 5);
 }
 
+TEST(ZoneMarkerOutline, TellsTheOtherWayToPartItWhereBothAreLikely) {
+  double x_left = 0.0;
+  double x_right = 0.0;
+  const auto columns = pillarOutline(0.02, 8.0, 45.0 * kDegree, 1.5, x_left, x_right);
+  EXPECT_TRUE(fitMarker(columns, x_left, x_right, 1e-4).other_faces.empty());
+  const FittedMarker coarse = fitMarker(columns, x_left, x_right, 0.006);
+  ASSERT_EQ(coarse.faces.size(), 2U);
+  EXPECT_EQ(coarse.other_faces.size(), 1U);
+  EXPECT_TRUE(fitMarker(columns, x_left, x_right, 0.006, false).other_faces.empty());
+}
+
 /// A camera before a square pillar with a chequered marker, ray by ray.
 class PillarScene : public testing::Test {
  protected:
@@ -190,6 +201,28 @@ TEST_F(PillarScene, WhatIsCutAboveIsReadButPlacesLittle) {
   EXPECT_EQ(sights[0].faces.size(), whole[0].faces.size());
   EXPECT_GT(sights[0].sigma, 10.0 * whole[0].sigma);
   EXPECT_GT(sights[0].height_sigma, 10.0 * whole[0].height_sigma);
+}
+
+// A car to the right of the marker, as high as half of it.
+TEST_F(PillarScene, ACarHidesWhereThePillarGoesOnAboveIt) {
+  draw(4.0, 35.0 * kDegree);
+  const cv::Rect box = cv::boundingRect(labels_);
+  const cv::Rect car(box.x + 2 * box.width / 3, box.y + box.height / 4, 2 * box.width, box.height);
+  const auto label = [](SemanticClass c) { return cv::Scalar(static_cast<int>(c)); };
+  cv::Mat hidden = labels_.clone();
+  const cv::Rect shaft(box.x, 0, box.width, 400);
+  hidden(shaft).setTo(label(SemanticClass::kPillar), hidden(shaft) == 0);
+  hidden(car & cv::Rect(0, 0, 640, 400)).setTo(label(SemanticClass::kVehicle));
+  auto sights = findZoneMarkers(hidden, image_, {}, camera_, R_level_cam_, {});
+  ASSERT_EQ(sights.size(), 1U);
+  EXPECT_FALSE(sights[0].legible);
+  cv::Mat behind = labels_.clone();
+  cv::Mat right = behind.colRange(box.br().x, std::min(640, box.br().x + 2 * box.width));
+  right.rowRange(car.y, car.br().y).setTo(label(SemanticClass::kVehicle));
+  sights = findZoneMarkers(behind, image_, {}, camera_, R_level_cam_, {});
+  ASSERT_EQ(sights.size(), 1U);
+  EXPECT_TRUE(sights[0].legible);
+  EXPECT_FALSE(sights[0].cut);
 }
 
 TEST_F(PillarScene, WhatIsCutAsideIsNotRead) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "parkade/core/check.hpp"
 #include "parkade/core/units.hpp"
@@ -130,12 +131,15 @@ FittedMarker fitMarker(const std::vector<MarkerColumn>& columns, double x_left, 
   PARKADE_CHECK(!columns.empty() && x_left < x_right && sigma > 0.0, "no outline to fit");
   const OutlineFit fits(columns, x_left, x_right, sigma);
   Fit fit = fits.single();
+  FittedMarker marker;
   constexpr double kCornerPrior = 2.0;  // two parameters more, and pillars mostly show two faces
   if (corners && columns.size() >= 4) {
-    const Fit corner = fits.corner();
-    if (corner.cost + kCornerPrior < fit.cost) fit = corner;
+    Fit corner = fits.corner();
+    corner.cost += kCornerPrior;
+    if (corner.cost < fit.cost) std::swap(fit, corner);
+    constexpr double kNearly = 12.0;  // chi-square
+    if (corner.cost < fit.cost + kNearly) marker.other_faces = fits.facesOf(corner);
   }
-  FittedMarker marker;
   marker.faces = fits.facesOf(fit);
   const double x = 0.5 * (x_left + x_right);
   const double angle = x > fit.x0 ? fit.right : fit.left;

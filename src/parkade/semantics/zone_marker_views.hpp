@@ -13,6 +13,18 @@
 
 namespace parkade {
 
+/// A face and what is written on it, best first.
+struct ReadFace {
+  const ZoneMarkerFace* face = nullptr;  ///< of the sight
+  std::vector<TextReading> readings;
+};
+
+/// Reads a sight's faces, from the characters `only` (empty: all). Where none is read surely and
+/// its outline could be parted otherwise, those faces are read too, and the surer way counts. Fails
+/// as the reader does.
+Result<std::vector<ReadFace>> readFaces(const ZoneMarkerSight& sight, ZoneTextReader& reader,
+                                        const std::string& only = {});
+
 /// What one camera's sights say to the tracker: those seen whole, from the camera's place `eye` in
 /// the axes of their rays. `reader` reads their faces, from the characters `only` (empty: all);
 /// without a reader nothing is read. Fails as the reader does.

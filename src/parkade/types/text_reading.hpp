@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace parkade {
 
@@ -11,5 +12,13 @@ struct TextReading {
   std::string text;
   double probability = 0.0;
 };
+
+/// Probability of the best text of some readings, best first; 0 where nothing may be written.
+inline double certaintyOf(const std::vector<TextReading>& readings) {
+  for (const TextReading& reading : readings) {
+    if (!reading.text.empty()) return reading.probability;
+  }
+  return 0.0;
+}
 
 }  // namespace parkade
