@@ -49,6 +49,7 @@ void ObjectRegistry::fuse(Track& track, const Eigen::Vector3d& p,
 void ObjectRegistry::update(const std::vector<ObjectObservation>& observations,
                             const SE2& T_world_vehicle, double z_vehicle, std::int64_t anchor,
                             const BevLabels* labels, const std::vector<LevelView>& views) {
+  way_.add(T_world_vehicle.translation(), anchor);
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   R.topLeftCorner<2, 2>() = T_world_vehicle.rotationMatrix();
   const double floor2 = options_.position_floor_m * options_.position_floor_m;
@@ -203,6 +204,7 @@ void ObjectRegistry::mergeDuplicates() {
 }
 
 void ObjectRegistry::moveWithAnchors(const std::function<SE2(std::int64_t)>& correction) {
+  way_.moveWithAnchors(correction);
   for (Track& track : tracks_) {
     const SE2 T = correction(track.anchor);
     Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
@@ -229,6 +231,7 @@ bool ObjectRegistry::exists(const Track& track) const {
       (followed ? options_.min_marker_observations : options_.min_observations)) {
     return false;
   }
+  if (track.semantic_class == SemanticClass::kZoneMarker && isPhantom(track)) return false;
   if (viewed_ && isSign(track.semantic_class)) {
     const ViewExistenceOptions& o = options_.sign_views;
     if (track.in_views.hits < o.min_hits || o.logOdds(track.in_views) <= 0.0) {
@@ -242,6 +245,19 @@ bool ObjectRegistry::exists(const Track& track) const {
   if (!sighted_ || track.outline.empty()) return true;
   const double looks_alike = track.votes.own + track.votes.rival;
   return existence(track) > 0.0 && track.votes.own >= options_.min_own_share * looks_alike;
+}
+
+// Who passes a marker sees it from many places. One that was measured once all the same, where no
+// pillar is, was put together from bearings to different ones.
+bool ObjectRegistry::isPhantom(const Track& marker) const {
+  constexpr double kPillarNear = 1.5;  // m
+  if (marker.observations > 1) return false;
+  const Eigen::Vector2d p = marker.position.head<2>();
+  if (!way_.passed(p, options_.marker_reach_m)) return false;
+  return std::none_of(tracks_.begin(), tracks_.end(), [&](const Track& track) {
+    return track.semantic_class == SemanticClass::kPillar &&
+           (track.position.head<2>() - p).norm() < kPillarNear && exists(track);
+  });
 }
 
 std::vector<MapObject> ObjectRegistry::objects() const {

@@ -9,6 +9,7 @@
 #include "parkade/core/options.hpp"
 #include "parkade/core/time.hpp"
 #include "parkade/geometry/se2.hpp"
+#include "parkade/mapping/driven_way.hpp"
 #include "parkade/mapping/existence.hpp"
 #include "parkade/mapping/label_sight.hpp"
 #include "parkade/mapping/parking_map.hpp"
@@ -47,6 +48,7 @@ struct ObjectRegistryOptions {
   int min_marker_observations = 1;
   double min_own_share = 0.45;
   double duplicate_overlap = 0.3;
+  double marker_reach_m = 8.0;
   ExistenceOptions paint{0.4, 0.1, 0.1};
   ExistenceOptions upright{0.6, 0.25, 0.1};  // smears beside pillars look alike again and again
   ViewExistenceOptions pillar_views{0.8, 0.3, 2};
@@ -70,6 +72,10 @@ struct ObjectRegistryOptions {
             0.0, 1.0);
     v.field("duplicate_overlap", duplicate_overlap, "ratio",
             "Of two of a class that share more of the smaller one's area, one is told.", 0.05, 1.0);
+    v.field("marker_reach_m", marker_reach_m, "m",
+            "A zone marker that the car passed so near is told where it was measured twice or a "
+            "pillar bears it.",
+            0.0, 100.0);
     v.group("paint", paint);
     v.group("upright", upright);
     v.group("pillar_views", pillar_views);
@@ -117,6 +123,7 @@ class ObjectRegistry {
   /// Log-odds.
   [[nodiscard]] double existence(const Track& track) const;
   [[nodiscard]] bool exists(const Track& track) const;
+  [[nodiscard]] bool isPhantom(const Track& marker) const;
   [[nodiscard]] bool compatible(const Track& a, SemanticClass c, const Eigen::Vector3d& p,
                                 double heading, bool has_heading) const;
   static void fuse(Track& track, const Eigen::Vector3d& p, const Eigen::Matrix3d& covariance);
@@ -124,6 +131,7 @@ class ObjectRegistry {
 
   ObjectRegistryOptions options_;
   std::vector<Track> tracks_;
+  DrivenWay way_;
   std::int64_t next_id_ = 1;
   bool sighted_ = false;  ///< labels were given
   bool viewed_ = false;   ///< views were given

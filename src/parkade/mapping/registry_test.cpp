@@ -307,6 +307,45 @@ TEST(ObjectRegistry, SignsAreToldWhereCamerasPicturesShowThem) {
   EXPECT_EQ(told(4, 20), 0U);
 }
 
+TEST(ObjectRegistry, AMarkerThatWasPassedIsMeasuredAgainOrStandsOnAPillar) {
+  ObjectObservation marker;
+  marker.semantic_class = SemanticClass::kZoneMarker;
+  marker.position = {12.0, 3.0, 1.6};
+  marker.covariance = 0.01 * Eigen::Matrix3d::Identity();
+  marker.text = "B1";
+  marker.confidence = 0.95;
+  ObjectObservation pillar = marker;
+  pillar.semantic_class = SemanticClass::kPillar;
+  pillar.position = {12.4, 3.0, 0.0};
+  pillar.text.clear();
+  // The marker is seen at the start of a straight way.
+  const auto told = [&](double way, int looks, int pillars) {
+    ObjectRegistry registry({});
+    for (int k = 0; k <= static_cast<int>(way); ++k) {
+      std::vector<ObjectObservation> seen;
+      const SE2 T_world_vehicle(0.0, {static_cast<double>(k), 0.0});
+      for (ObjectObservation o : {marker, pillar}) {
+        if (k >= (o.semantic_class == SemanticClass::kPillar ? pillars : looks)) continue;
+        o.position.x() -= k;
+        seen.push_back(o);
+      }
+      registry.update(seen, T_world_vehicle, 0.0, k);
+    }
+    // Whatever the anchors do, what was passed stays so.
+    registry.moveWithAnchors([](std::int64_t) { return SE2(1.0, {100.0, 50.0}); });
+    std::size_t markers = 0;
+    for (const MapObject& object : registry.objects()) {
+      markers += object.semantic_class == SemanticClass::kZoneMarker ? 1 : 0;
+    }
+    return markers;
+  };
+  EXPECT_EQ(told(2.0, 1, 0), 1U);  // not passed
+  EXPECT_EQ(told(14.0, 1, 0), 0U);
+  EXPECT_EQ(told(14.0, 2, 0), 1U);
+  EXPECT_EQ(told(14.0, 1, 2), 0U);  // no pillar yet
+  EXPECT_EQ(told(14.0, 1, 4), 1U);
+}
+
 // A floor with a 1 m x 0.5 m stop line at (4, 0), labelled for a part of its width.
 BevLabels stopLineLabels(double share) {
   BevLabels labels;
