@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <opencv2/core.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "parkade/cli/zone_text_truth.hpp"
 #include "parkade/core/units.hpp"
@@ -41,19 +40,34 @@ struct Strip {
   }
 };
 
+/// A picture of numbers, averaged with its neighbours (1 2 1) along both axes, `times` times.
+cv::Mat smoothed(const cv::Mat& picture, int times) {
+  cv::Mat out = picture.clone();
+  for (int k = 0; k < 2 * times; ++k) {
+    const int du = k % 2;
+    const int dv = 1 - du;
+    const cv::Mat in = out.clone();
+    for (int v = dv; v + dv < out.rows; ++v) {
+      for (int u = du; u + du < out.cols; ++u) {
+        out.at<float>(v, u) = 0.5F * in.at<float>(v, u) +
+                              0.25F * (in.at<float>(v - dv, u - du) + in.at<float>(v + dv, u + du));
+      }
+    }
+  }
+  return out;
+}
+
 /// The labels with the edges of markers moved at random by up to about a pixel, as a network's are.
 cv::Mat shakenLabels(const cv::Mat& labels, Random& random) {
-  constexpr double kBlur = 0.8;    // px
-  constexpr double kLength = 1.2;  // px, of the waves
   cv::Mat markers;
   cv::Mat(labels == kMarker).convertTo(markers, CV_32F, 1.0 / 255.0);
-  cv::GaussianBlur(markers, markers, {}, kBlur);
+  markers = smoothed(markers, 1);
   cv::Mat waves(labels.size(), CV_32F);
   for (int v = 0; v < waves.rows; ++v) {
     for (int u = 0; u < waves.cols; ++u)
       waves.at<float>(v, u) = static_cast<float>(random.normal());
   }
-  cv::GaussianBlur(waves, waves, {}, kLength);
+  waves = smoothed(waves, 3);
   cv::Scalar mean;
   cv::Scalar deviation;
   cv::meanStdDev(waves, mean, deviation);

@@ -116,6 +116,8 @@ class ObjectRegistry {
     Existence existence;
     Existence in_views;  ///< of a pillar or sign, by cameras' own pictures
     AreaShares votes;    ///< sum of what the labels showed of its place in plain sight
+    [[nodiscard]] bool isUpright() const;
+    [[nodiscard]] bool isSign() const;
   };
   void look(const BevLabels& labels, const SE2& T_world_vehicle, const std::vector<bool>& observed);
   void lookAcross(const LevelView& view, const SE2& T_world_vehicle);
