@@ -9,9 +9,9 @@ import os
 import numpy as np
 from PIL import Image, ImageDraw, ImageFilter, ImageFont
 
-from text_network import ALPHABET, HEIGHT, WIDTH
+from text_network import HEIGHT, WIDTH, ZONE_LETTERS
 
-LETTERS = ALPHABET[10:-1]
+LETTERS = ZONE_LETTERS[10:-1]
 FONTS = ["DejaVuSans-Bold", "DejaVuSansCondensed-Bold", "DejaVuSans", "DejaVuSansMono-Bold",
          "LiberationSans-Bold", "LiberationSansNarrow-Bold", "LiberationSans-Regular",
          "LiberationMono-Bold", "DejaVuSerif-Bold"]
@@ -42,7 +42,7 @@ def random_text(rng):
         return number + letter
     if kind < 0.8:
         return letter + LETTERS[rng.integers(len(LETTERS))] + number
-    return "".join(ALPHABET[rng.integers(len(ALPHABET) - 1)] for _ in range(rng.integers(1, 5)))
+    return "".join(ZONE_LETTERS[rng.integers(len(ZONE_LETTERS) - 1)] for _ in range(rng.integers(1, 5)))
 
 
 def plate(rng, text, font, size, back, ink):
@@ -148,11 +148,12 @@ def normalised(pixels, width):
 
 
 NUMBERS = ("number", "turned")
+SIGNS = ("guide", "limit")
 NUMBERS_WEIGHT = 3.0  # they are fewer than faces, and read from one view each
 
 
 class Crops:
-    """Faces and numbers that the simulator drew, straightened by the program. kinds: what they were
+    """Faces, signs and numbers that the simulator drew, straightened by the program. kinds: what they were
     cut out by (parkade bench semantics --texts)."""
 
     def __init__(self, folders, wanted):

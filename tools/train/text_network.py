@@ -8,8 +8,9 @@ import torch
 from torch import nn
 from torch.nn import functional as F
 
-# I and O are left out: garages avoid them since they look like digits.
-ALPHABET = "0123456789ABCDEFGHJKLMNPQRSTUVWXYZ-"
+# Of zones; I and O are left out: garages avoid them since they look like digits.
+ZONE_LETTERS = "0123456789ABCDEFGHJKLMNPQRSTUVWXYZ-"
+ALPHABET = ZONE_LETTERS + "IO<>^"  # and of guide signs, with arrows
 WIDTH, HEIGHT = 96, 40
 MEAN, SCALE = 128.0, 1.0 / 40.0
 

@@ -19,7 +19,7 @@ import numpy as np  # noqa: E402
 import torch  # noqa: E402
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from text_data import Crops, augmented, fonts, rendered  # noqa: E402
+from text_data import NUMBERS, SIGNS, Crops, augmented, fonts, rendered  # noqa: E402
 from text_network import TextNetwork, column_loss, read, sequence_loss, to_input  # noqa: E402
 from warm_start import load, settle  # noqa: E402
 
@@ -62,20 +62,24 @@ def accuracy(network, patches, texts):
 
 
 def report(network, crops, drawn):
-    """Share read rightly: rendered faces; faces of the validation garages by distance, and numbers."""
+    """Share read rightly: rendered faces; of the validation garages faces by distance, signs, numbers."""
     right, _ = accuracy(network, [p for p, _, _ in drawn], [t for _, t, _ in drawn])
     text = f"rendered {right.mean():.3f}"
     if len(crops):
         right, found = accuracy(network, crops.patches, crops.texts)
-        number = crops.kinds == "number"
-        turned = crops.kinds == "turned"
-        has_text = np.array([bool(t) for t in crops.texts]) & ~number
+        written = np.array([bool(t) for t in crops.texts])
+        face = ~np.isin(crops.kinds, NUMBERS + SIGNS)
         for low, high in ((0, 6), (6, 10), (10, 15)):
-            chosen = has_text & (crops.distances >= low) & (crops.distances < high)
+            chosen = face & written & (crops.distances >= low) & (crops.distances < high)
             text += f", {low}-{high} m {right[chosen].mean():.3f} of {chosen.sum()}"
-        plain = ~has_text & ~number & ~turned & (crops.heights > 9.0)
-        for name, chosen in (("plain", plain), ("numbers", number), ("upside down", turned)):
-            text += f", {name} {right[chosen].mean():.3f} of {chosen.sum()}"
+        near = written & (crops.distances < 10)
+        for name, chosen in (("plain", face & ~written & (crops.heights > 9.0)),
+                             ("guide", near & (crops.kinds == "guide")),
+                             ("limit", near & (crops.kinds == "limit")),
+                             ("numbers", crops.kinds == "number"),
+                             ("upside down", crops.kinds == "turned")):
+            if chosen.any():
+                text += f", {name} {right[chosen].mean():.3f} of {chosen.sum()}"
     return text
 
 

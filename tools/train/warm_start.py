@@ -13,11 +13,20 @@ def blocks_of(network):
             yield name, parts[0], parts[1]
 
 
+def grown(value, wanted):
+    """A tensor with the rows that it lacks taken from the one that is wanted."""
+    if value.shape[1:] != wanted.shape[1:] or value.dim() == 0 or len(value) >= len(wanted):
+        return value
+    return torch.cat([value, wanted[len(value):]])
+
+
 def load(path, network):
     """The state dict of path, a state file or an ONNX file that export.py or export_text.py wrote.
-    Of the latter `settle` must find the batch norms' means and spreads before training."""
+    Of the latter `settle` must find the batch norms' means and spreads before training. Where the
+    network has more channels in the end (letters were added), those begin anew."""
     if not path.endswith(".onnx"):
-        return torch.load(path)["average"]
+        return {key: grown(value, network.state_dict()[key])
+                for key, value in torch.load(path)["average"].items()}
     import onnx
     from onnx import numpy_helper
 
@@ -30,6 +39,8 @@ def load(path, network):
         state[f"{name}.1.weight"] = torch.ones_like(norm.weight)
         state[f"{name}.1.running_mean"] = torch.zeros_like(norm.running_mean)
         state[f"{name}.1.running_var"] = torch.full_like(norm.running_var, 1.0 - norm.eps)
+    stored = {key: grown(value, state[key]) if key in state else value
+              for key, value in stored.items()}
     unknown = [key for key, value in stored.items()
                if key not in state or state[key].shape != value.shape]
     if unknown:

@@ -14,6 +14,7 @@
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
 #include "parkade/semantics/class_map.hpp"
+#include "parkade/semantics/guide_text.hpp"
 #include "parkade/semantics/painted_numbers.hpp"
 #include "parkade/semantics/zone_marker_faces.hpp"
 #include "parkade/types/level_frame.hpp"
@@ -85,8 +86,9 @@ cv::Mat shakenLabels(const cv::Mat& labels, Random& random) {
   return out;
 }
 
+// elsewhere_none: where no text of these is, there is none at all.
 void addFaces(const std::vector<ZoneMarkerSight>& sights, const std::vector<TrueZoneText>& texts,
-              const char* kind, Strip& strip) {
+              const char* kind, Strip& strip, bool elsewhere_none) {
   for (const ZoneMarkerSight& sight : sights) {
     for (const ZoneMarkerFace& face : sight.faces) {
       const TrueZoneText* truth = textWithin(texts, face.corners);
@@ -97,7 +99,7 @@ void addFaces(const std::vector<ZoneMarkerSight>& sights, const std::vector<True
           !readable && std::any_of(texts.begin(), texts.end(), [&](const TrueZoneText& text) {
             return text.in_sight * shareWithin(text, face.corners) > kNone;
           });
-      if (part) continue;
+      if (part || (truth == nullptr && !elsewhere_none)) continue;
       strip.add(face.patch, readable ? truth->text : "", face.height_px, face.slant,
                 readable ? truth->distance : 0.0, kind);
     }
@@ -231,16 +233,29 @@ Status TextSampler::write(const SemanticSampler& sampler, const SemanticSample& 
   const auto addBy = [&](const cv::Mat& labels, const char* kind) {
     addFaces(
         findZoneMarkers(labels, image, sampler.bodyMask(camera), eye.camera, R_level_cam, options),
-        texts, kind, strip);
+        texts, kind, strip, true);
   };
-  const cv::Mat small = atNetworkSize(true_labels);
-  addBy(small, "true");
-  addBy(shakenLabels(small, random), "shaken");
+  std::vector<cv::Mat> all_labels = {atNetworkSize(true_labels)};
+  addBy(all_labels.front(), "true");
+  addBy(shakenLabels(all_labels.front(), random), "shaken");
   if (network_) {
     Result<ViewLabels> found = network_->segmentView(image);
     if (!found) return found.error();
     addBy(found->labels, "network");
+    all_labels.push_back(found->labels);
   }
+  const auto addSigns = [&](SemanticClass sign, const char* kind) {
+    std::vector<TrueZoneText> signs =
+        trueZoneTexts(sampler, sample, camera, true_labels, kFaceReach, sign);
+    for (TrueZoneText& text : signs) text.text = guideReading(text.text);
+    for (const cv::Mat& labels : all_labels) {
+      addFaces(findSigns(labels, image, sampler.bodyMask(camera), eye.camera, R_level_cam, sign,
+                         options),
+               signs, kind, strip, false);
+    }
+  };
+  addSigns(SemanticClass::kGuideSign, "guide");
+  addSigns(SemanticClass::kSpeedLimitSign, "limit");
   addNumbers(sampler, sample, camera, true_labels, random, strip);
   if (strip.patches.rows == 0) return {};
   const Status status = writeFileAtomic(stem + "_texts.csv", strip.lines);

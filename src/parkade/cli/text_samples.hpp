@@ -12,8 +12,8 @@
 
 namespace parkade::cli {
 
-/// Training data for the reading of texts: what a camera shows of zone markers and of numbers in
-/// slots, straightened as the running program does.
+/// Training data for the reading of texts: what a camera shows of zone markers, of signs and of
+/// numbers in slots, straightened as the running program does.
 class TextSampler {
  public:
   /// view_network: class map of the network for camera views; empty: Parkade's own, and faces by
@@ -23,8 +23,8 @@ class TextSampler {
   /// STEM_texts.png, patches one below the other, and STEM_texts.csv with a line for each: the text
   /// (empty: none that could be read), height_px, slant_deg, distance_m, and what the patch was cut
   /// out by: true (the true labels of a marker), shaken (those with their edges moved), network,
-  /// number (in a slot), turned (a number upside down, which is no text). Writes nothing where
-  /// there is no patch.
+  /// guide and limit (signs, by either labels), number (in a slot), turned (a number upside down,
+  /// which is no text). Writes nothing where there is no patch.
   Status write(const SemanticSampler& sampler, const SemanticSample& sample, int camera,
                const std::string& stem);
 

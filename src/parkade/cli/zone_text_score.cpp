@@ -118,7 +118,7 @@ class ZoneTextScore : public SampleScore {
         trueZoneTexts(sampler, sample, camera, true_labels, 1.5 * kTextReach);
     std::vector<Read> reads;
     for (const ZoneMarkerSight& sight : sights) {
-      Result<std::vector<ReadFace>> faces = readFaces(sight, reader_);
+      Result<std::vector<ReadFace>> faces = readFaces(sight, reader_, kZoneLetters);
       if (!faces) return faces.error();
       for (const ReadFace& read : *faces) {
         reads.push_back({read.face, textWithin(texts, read.face->corners), read.readings.front()});

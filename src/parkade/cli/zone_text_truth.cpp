@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "parkade/types/semantic_class.hpp"
-
 namespace parkade::cli {
 namespace {
 
@@ -14,21 +12,22 @@ constexpr int kAcross = 9;
 constexpr int kUp = 5;
 constexpr double kPlaces = kAcross * kUp;
 
-// Share of a sign's area that the labels show as a marker; and where it is in the picture.
+// Share of a sign's area that the labels show as its class; and where it is in the picture.
 double shareInSight(const sim::Sign& sign, const SE3& T_cam_world, const Camera& camera,
                     const cv::Mat& labels, std::vector<Eigen::Vector2d>& places) {
+  const double share = sign.semantic_class == SemanticClass::kSpeedLimitSign ? 0.6 : 1.0;
   int seen = 0;
   for (int i = 0; i < kAcross; ++i) {
     for (int j = 0; j < kUp; ++j) {
-      const Eigen::Vector3d p_sign(((i + 0.5) / kAcross - 0.5) * sign.width,
-                                   ((j + 0.5) / kUp - 0.5) * sign.height, 0.0);
+      const Eigen::Vector3d p_sign(((i + 0.5) / kAcross - 0.5) * share * sign.width,
+                                   ((j + 0.5) / kUp - 0.5) * share * sign.height, 0.0);
       Eigen::Vector2d pixel;
       if (!camera.project(T_cam_world * (sign.T_world_sign * p_sign), pixel)) continue;
       places.push_back(pixel);
       if (!camera.inImage(pixel, 1.0)) continue;
       const auto label = labels.at<std::uint8_t>(static_cast<int>(std::lround(pixel.y())),
                                                  static_cast<int>(std::lround(pixel.x())));
-      seen += label == static_cast<std::uint8_t>(SemanticClass::kZoneMarker) ? 1 : 0;
+      seen += label == static_cast<std::uint8_t>(sign.semantic_class) ? 1 : 0;
     }
   }
   return seen / kPlaces;
@@ -47,19 +46,24 @@ bool isInside(const Eigen::Vector2d& pixel, const std::array<Eigen::Vector2d, 4>
 
 std::vector<TrueZoneText> trueZoneTexts(const SemanticSampler& sampler,
                                         const SemanticSample& sample, int camera,
-                                        const cv::Mat& labels, double reach) {
+                                        const cv::Mat& labels, double reach,
+                                        SemanticClass sign_class) {
   const RigCamera& eye = sampler.simulation().trueRig().cameras[static_cast<std::size_t>(camera)];
   const SE3 T_cam_world = (sample.T_world_vehicle * eye.T_vehicle_cam).inverse();
   std::vector<TrueZoneText> texts;
   for (const sim::Sign& sign : sampler.simulation().garage().signs) {
-    if (sign.semantic_class != SemanticClass::kZoneMarker) continue;
+    if (sign.semantic_class != sign_class) continue;
     const Eigen::Vector3d middle = T_cam_world * sign.T_world_sign.translation();
     const Eigen::Vector3d normal =
         T_cam_world.rotation() * (sign.T_world_sign.rotation() * Eigen::Vector3d::UnitZ());
     TrueZoneText text;
     text.text = sign.text;
     text.distance = middle.norm();
-    const double facing = -normal.dot(middle) / text.distance;
+    double facing = -normal.dot(middle) / text.distance;
+    if (facing <= 0.0 && sign_class == SemanticClass::kGuideSign) {
+      text.text.clear();  // a board's back
+      facing = -facing;
+    }
     if (text.distance > reach || facing <= 0.0) continue;
     text.slant = std::acos(std::min(1.0, facing));
     Eigen::Vector2d top;

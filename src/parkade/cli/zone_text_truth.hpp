@@ -9,10 +9,11 @@
 #include <vector>
 
 #include "parkade/cli/semantic_samples.hpp"
+#include "parkade/types/semantic_class.hpp"
 
 namespace parkade::cli {
 
-/// A zone text on a face of a pillar, as one camera should see it.
+/// A zone text on a face of a pillar, or a sign's, as one camera should see it.
 struct TrueZoneText {
   std::string text;
   double distance = 0.0;  ///< m, from the camera to the text's middle
@@ -23,11 +24,13 @@ struct TrueZoneText {
   std::vector<Eigen::Vector2d> places;               ///< px, spread evenly over it
 };
 
-/// The zone texts that face a camera of a sample within `reach` metres, hidden ones too. labels:
-/// the camera's true labels.
+/// The texts of zone markers, or of signs of a class, that face a camera of a sample within `reach`
+/// metres, hidden ones too. Of a speed-limit sign, the middle that bears its number; of a guide
+/// sign the back too, without text. labels: the camera's true labels.
 std::vector<TrueZoneText> trueZoneTexts(const SemanticSampler& sampler,
                                         const SemanticSample& sample, int camera,
-                                        const cv::Mat& labels, double reach);
+                                        const cv::Mat& labels, double reach,
+                                        SemanticClass sign = SemanticClass::kZoneMarker);
 
 /// The text whose middle lies in a quadrilateral of the picture (corners in order), the nearest to
 /// its middle; null where there is none.

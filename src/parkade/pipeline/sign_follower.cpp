@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "parkade/semantics/guide_text.hpp"
 #include "parkade/semantics/zone_marker_views.hpp"
 
 namespace parkade {
@@ -14,11 +15,14 @@ Status SignFollower::add(const cv::Mat& labels, const cv::Mat& image, const cv::
                          const Camera& camera, const SE3& T_up_cam, TimeNs t_ns,
                          ZoneTextReader& reader) {
   if (!options_.enabled) return {};
+  // A reader that was never taught arrows would read words of signs wrong.
+  const bool knows_arrows = reader.letters().find('^') != std::string::npos;
   for (const SemanticClass sign : {SemanticClass::kGuideSign, SemanticClass::kSpeedLimitSign}) {
     const bool limit = sign == SemanticClass::kSpeedLimitSign;
     const Result<std::vector<ZoneMarkerView>> views =
         viewsOf(findSigns(labels, image, mask, camera, T_up_cam.rotation(), sign, options_.faces),
-                T_up_cam.translation(), limit ? &reader : nullptr, "0123456789");
+                T_up_cam.translation(), limit || knows_arrows ? &reader : nullptr,
+                limit ? "0123456789" : kGuideLetters);
     if (!views) return views.error();
     (limit ? limits_ : guides_).add(*views, t_ns);
   }
@@ -27,13 +31,15 @@ Status SignFollower::add(const cv::Mat& labels, const cv::Mat& image, const cv::
 
 std::vector<FollowedSign> SignFollower::takeTold() {
   std::vector<FollowedSign> told;
-  for (ZoneMarker& sign : guides_.takeTold()) {
-    told.push_back({SemanticClass::kGuideSign, std::move(sign)});
-  }
-  for (ZoneMarker& sign : limits_.takeTold()) {
-    if (sign.confidence < options_.text_confidence) sign.text.clear();
-    told.push_back({SemanticClass::kSpeedLimitSign, std::move(sign)});
-  }
+  const auto take = [&](SemanticClass semantic_class, ZoneMarkerTracker& tracker) {
+    for (ZoneMarker& sign : tracker.takeTold()) {
+      if (sign.confidence < options_.text_confidence) sign.text.clear();
+      if (semantic_class == SemanticClass::kGuideSign) sign.text = guideMeaning(sign.text);
+      told.push_back({semantic_class, std::move(sign)});
+    }
+  };
+  take(SemanticClass::kGuideSign, guides_);
+  take(SemanticClass::kSpeedLimitSign, limits_);
   return told;
 }
 

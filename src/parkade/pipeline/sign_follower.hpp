@@ -25,7 +25,7 @@ struct SignFollowerOptions {
   void visit(OptionVisitor& v) {
     v.field("enabled", enabled, "Whether guide signs and speed-limit signs are looked for.");
     v.field("text_confidence", text_confidence, "probability",
-            "A limit's number is told when read this surely over all views.", 0.1, 0.999999);
+            "A sign's text is told when read this surely over all views.", 0.1, 0.999999);
     v.group("faces", faces);
     v.group("guide", guide);
     v.group("limit", limit);
@@ -50,7 +50,7 @@ struct SignFollowerOptions {
 /// A sign placed by several views.
 struct FollowedSign {
   SemanticClass semantic_class = SemanticClass::kGuideSign;
-  ZoneMarker sign;  ///< text: of a limit, empty where it is not sure
+  ZoneMarker sign;  ///< text: a limit's number, a guide sign's meaning; empty: not sure
 };
 
 /// Guide signs and speed-limit signs in the labels of the cameras' own pictures, followed and

@@ -41,7 +41,7 @@ struct ZoneMarkerFrontEnd::Impl {
     if (!signs_seen) return signs_seen.error();
     return viewsOf(findZoneMarkers(labels->labels, image, masks[camera], eye.camera,
                                    T_up_cam.rotation(), options.faces),
-                   T_up_cam.translation(), &reader);
+                   T_up_cam.translation(), &reader, options.letters);
   }
 };
 

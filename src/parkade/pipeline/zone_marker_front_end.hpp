@@ -12,6 +12,7 @@
 #include "parkade/pipeline/sign_follower.hpp"
 #include "parkade/semantics/zone_marker_faces.hpp"
 #include "parkade/semantics/zone_marker_tracker.hpp"
+#include "parkade/semantics/zone_text_reader.hpp"
 #include "parkade/types/level_view.hpp"
 #include "parkade/types/pose_estimate.hpp"
 #include "parkade/types/samples.hpp"
@@ -23,6 +24,7 @@ struct ZoneMarkerFrontEndOptions {
   bool enabled = true;
   std::string network;
   std::string reader;
+  std::string letters = kZoneLetters;
   int views = 1;
   ZoneMarkerFaceOptions faces;
   ZoneMarkerTrackerOptions tracker;
@@ -33,6 +35,7 @@ struct ZoneMarkerFrontEndOptions {
     v.field("network", network,
             "Class map of the network for camera views; empty: the one that comes along.");
     v.field("reader", reader, "Network that reads zone texts; empty: the one that comes along.");
+    v.field("letters", letters, "Characters that zones are named with.");
     v.field("views", views, "count",
             "Cameras whose pictures are looked at each time; all take their turns.", 1, 64);
     v.group("faces", faces);

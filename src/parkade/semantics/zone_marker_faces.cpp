@@ -18,9 +18,8 @@ namespace {
 /// What is looked for, and how its faces are taken.
 struct Search {
   SemanticClass semantic_class = SemanticClass::kZoneMarker;
-  bool corners = true;       ///< it may stand on two faces of a pillar
-  bool straightened = true;  ///< its faces bear text
-  double share = 1.0;        ///< of the height, about the middle, that bears it
+  bool corners = true;  ///< it may stand on two faces of a pillar
+  double share = 1.0;   ///< of the height, about the middle, that bears its text
 };
 
 /// The outline's columns, one pixel of the label picture wide.
@@ -172,7 +171,7 @@ std::vector<ZoneMarkerSight> find(const cv::Mat& labels, const cv::Mat& image, c
     const auto straightened = [&](const std::vector<FittedFace>& fitted) {
       std::vector<ZoneMarkerFace> out;
       for (const FittedFace& face : fitted) {
-        if (!found->sight.legible || !search.straightened || faces >= options.max_faces) break;
+        if (!found->sight.legible || faces >= options.max_faces) break;
         if (face.slant() > options.max_slant_deg * M_PI / 180.0) continue;
         ZoneMarkerFace straight = straighten(image, found->view, middleOf(face, search.share),
                                              found->marker.middle / search.share);
@@ -204,7 +203,8 @@ std::vector<ZoneMarkerSight> findSigns(const cv::Mat& labels, const cv::Mat& ima
                                        const ZoneMarkerFaceOptions& options) {
   constexpr double kInsideRing = 0.85;  // of a round plate's mean height over its columns
   const bool limit = sign == SemanticClass::kSpeedLimitSign;
-  return find(labels, image, mask, camera, R_level_cam, {sign, false, limit, kInsideRing}, options);
+  return find(labels, image, mask, camera, R_level_cam, {sign, false, limit ? kInsideRing : 1.0},
+              options);
 }
 
 }  // namespace parkade

@@ -74,8 +74,8 @@ std::vector<ZoneMarkerSight> findZoneMarkers(const cv::Mat& labels, const cv::Ma
                                              const SO3& R_level_cam,
                                              const ZoneMarkerFaceOptions& options);
 
-/// The same for signs of a class: one face each. That of a speed-limit sign is straightened, the
-/// middle of the plate inside its ring; of a guide sign none.
+/// The same for signs of a class: one face each, of a speed-limit sign the middle of the plate
+/// inside its ring.
 std::vector<ZoneMarkerSight> findSigns(const cv::Mat& labels, const cv::Mat& image,
                                        const cv::Mat& mask, const Camera& camera,
                                        const SO3& R_level_cam, SemanticClass sign,

@@ -12,6 +12,9 @@
 
 namespace parkade {
 
+/// What zones are named with: I and O look like digits.
+inline constexpr const char* kZoneLetters = "0123456789ABCDEFGHJKLMNPQRSTUVWXYZ-";
+
 /// Reads straightened faces of zone markers with a small sequence network, run by OpenCV. Not
 /// thread-safe: it keeps buffers.
 class ZoneTextReader {
