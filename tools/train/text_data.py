@@ -150,6 +150,7 @@ def normalised(pixels, width):
 NUMBERS = ("number", "turned")
 SIGNS = ("guide", "limit")
 NUMBERS_WEIGHT = 3.0  # they are fewer than faces, and read from one view each
+SIGNS_WEIGHT = 8.0  # a hundredth of the faces
 
 
 class Crops:
@@ -175,9 +176,11 @@ class Crops:
         self.kinds = np.array(self.kinds)
         has_text = np.array([bool(text) for text in self.texts], bool)
         number = np.isin(self.kinds, NUMBERS)
+        sign = np.isin(self.kinds, SIGNS)
         # Far faces cannot be read; plain ones are many.
-        useful = number | ((self.heights > 9.0) & (~has_text | (self.distances < 16.0)))
-        self.weights = useful * np.where(number, NUMBERS_WEIGHT, np.where(has_text, 1.0, 0.35))
+        useful = number | sign | ((self.heights > 9.0) & (~has_text | (self.distances < 16.0)))
+        self.weights = useful * np.select([number, sign, has_text],
+                                            [NUMBERS_WEIGHT, SIGNS_WEIGHT, 1.0], 0.35)
         if self.weights.sum() > 0:
             self.weights = self.weights / self.weights.sum()
 

@@ -14,8 +14,9 @@
 namespace parkade {
 namespace {
 
-/// A round plate that says "10" and a hanging sign, in a grey world that a car drives through; the
-/// labels are those of a perfect network, or of one that frays their edges.
+/// A round plate that says "10" and a hanging sign with an arrow to the left and "P", in a grey
+/// world that a car drives through; the labels are those of a perfect network, or of one that frays
+/// their edges.
 class SignDrive : public testing::Test {
  protected:
   SignDrive() {
@@ -37,6 +38,18 @@ class SignDrive : public testing::Test {
     const int row = static_cast<int>(std::floor(3.5 - up / 0.06));
     return column >= 0 && column < 11 && row >= 0 && row < 7 &&
            kText[static_cast<std::size_t>(row)][column] == '#';
+  }
+
+  static bool guideInk(double right, double up) {  // m from its middle
+    constexpr std::array<const char*, 7> kP = {"####.", "#...#", "#...#", "####.",
+                                               "#....", "#....", "#...."};
+    const int column = static_cast<int>(std::floor((right - 0.24) / 0.035 + 2.5));
+    const int row = static_cast<int>(std::floor(3.5 - up / 0.035));
+    if (column >= 0 && column < 5 && row >= 0 && row < 7) {
+      return kP[static_cast<std::size_t>(row)][column] == '#';
+    }
+    const double along = right + 0.71;  // from the arrow's point
+    return along > 0.0 && along < 0.26 && std::abs(up) < (along < 0.13 ? along : 0.03);
   }
 
   struct Picture {
@@ -61,7 +74,7 @@ class SignDrive : public testing::Test {
       Eigen::Vector2d on;
       if (hit(guide_, on) && std::abs(on.x()) < 0.85 && std::abs(on.y()) < 0.21) {
         label = static_cast<int>(SemanticClass::kGuideSign);
-        grey = 230.0;
+        grey = guideInk(on.x(), on.y()) ? 230.0 : 60.0;
       }
       if (hit(limit_, on) && on.norm() < 0.25) {
         label = static_cast<int>(SemanticClass::kSpeedLimitSign);
@@ -120,11 +133,12 @@ class SignDrive : public testing::Test {
   Eigen::Vector3d limit_{8.0, 4.0, 2.0};
 };
 
-TEST_F(SignDrive, SignsArePlacedAndTheLimitIsRead) {
+TEST_F(SignDrive, SignsArePlacedAndRead) {
   for (const double fray : {0.0, 0.4}) {
     int guides = 0;
     int limits = 0;
     std::string text;
+    std::string meaning;
     for (const FollowedSign& told : drive(fray)) {
       const bool limit = told.semantic_class == SemanticClass::kSpeedLimitSign;
       const Eigen::Vector3d error = told.sign.position - (limit ? limit_ : guide_);
@@ -132,15 +146,13 @@ TEST_F(SignDrive, SignsArePlacedAndTheLimitIsRead) {
       EXPECT_LT(error.norm(), 0.45) << error.transpose();
       // Honest to 99.9 % of chi-square with 3 degrees.
       EXPECT_LT(error.dot(told.sign.covariance.inverse() * error), 16.27) << error.transpose();
-      if (limit) text = told.sign.text;
-      if (!limit) {
-        EXPECT_EQ(told.sign.text, "");
-      }
+      (limit ? text : meaning) = told.sign.text;
     }
     EXPECT_GE(guides, 1) << fray;
     EXPECT_GE(limits, 1) << fray;
-    // Frayed edges may cost the number, but make no other one.
+    // Frayed edges may cost a text, but make no other one.
     EXPECT_TRUE(text == "10" || (fray > 0.0 && text.empty())) << fray << " " << text;
+    EXPECT_TRUE(meaning == "parking_left" || (fray > 0.0 && meaning.empty())) << fray << meaning;
   }
 }
 

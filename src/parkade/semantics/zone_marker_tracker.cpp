@@ -114,6 +114,12 @@ ZoneMarker markerOf(std::uint64_t id, const Solution& solution, const TextReadin
 
 }  // namespace
 
+// Pillars are alike but for their texts.
+bool ZoneMarkerTracker::contradicts(const Track& track, const ZoneMarkerView& view) {
+  return std::any_of(view.readings.begin(), view.readings.end(),
+                     [&](const auto& readings) { return track.text.contradicts(readings); });
+}
+
 double ZoneMarkerTracker::misfit(const Track& track, const ZoneMarkerView& view) const {
   const Residual r = residualOf(view, track.state, options_.place_sigma_m);
   if (!r.valid) return kMarkerGate;
@@ -157,7 +163,8 @@ void ZoneMarkerTracker::add(const std::vector<ZoneMarkerView>& views, TimeNs t_n
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     for (std::size_t j = 0; j < views.size(); ++j) {
       const double value = misfit(tracks_[i], views[j]);
-      if (value < kMarkerGate) pairs.push_back({value, i, j});
+      if (value >= kMarkerGate || contradicts(tracks_[i], views[j])) continue;
+      pairs.push_back({value, i, j});
     }
   }
   std::stable_sort(pairs.begin(), pairs.end(),

@@ -95,6 +95,7 @@ class ZoneMarkerTracker {
     TimeNs seen_ns = 0;
   };
   [[nodiscard]] double misfit(const Track& track, const ZoneMarkerView& view) const;
+  [[nodiscard]] static bool contradicts(const Track& track, const ZoneMarkerView& view);
   void extend(Track& track, const ZoneMarkerView& view, TimeNs t_ns) const;
   void start(const ZoneMarkerView& view, TimeNs t_ns);
 

@@ -90,6 +90,24 @@ TEST(ZoneMarkerTracker, CovarianceTellsTheErrorOfNoisyViews) {
   EXPECT_LT(nees, 1.5);
 }
 
+TEST(ZoneMarkerTracker, AViewThatSurelyReadsAnotherTextIsOfAnotherMarker) {
+  const auto followedWith = [](const std::vector<std::vector<TextReading>>& last) {
+    ZoneMarkerTracker tracker({});
+    for (int k = 0; k < 7; ++k) {
+      ZoneMarkerView view = viewOf({6.0, 3.0, 1.7}, 0.6, {0.5 * k, 0.0, 0.9}, nullptr);
+      view.readings = k < 6 ? says("B12", 0.9) : last;
+      tracker.add({view}, k * TimeNs{100000000});
+    }
+    return tracker.followed().size();
+  };
+  EXPECT_EQ(followedWith({}), 1U);
+  EXPECT_EQ(followedWith(says("B12", 0.95)), 1U);
+  EXPECT_EQ(followedWith(says("B1", 0.95)), 1U);    // a part of it
+  EXPECT_EQ(followedWith(says("B12B", 0.95)), 1U);  // two faces
+  EXPECT_EQ(followedWith(says("C12", 0.7)), 1U);    // may be misread
+  EXPECT_EQ(followedWith(says("C12", 0.95)), 2U);
+}
+
 TEST(ZoneMarkerTracker, NeighboursStayApart) {
   Random random(4);
   ZoneMarkerTracker tracker({});

@@ -58,6 +58,20 @@ class TextEvidence {
   /// Logarithm of a text's likelihood ratio.
   [[nodiscard]] double support(const std::string& text) const { return evidenceFor(text); }
 
+  /// Whether a face that reads so bears another text: both are sure of theirs, and the face's is no
+  /// part of this one's, nor this one's of it.
+  [[nodiscard]] bool contradicts(const std::vector<TextReading>& readings) const {
+    constexpr double kSureFace = 0.9;
+    constexpr double kSure = 0.95;
+    const auto other = std::find_if(readings.begin(), readings.end(), [](const TextReading& r) {
+      return !r.text.empty() && r.probability > kSureFace;
+    });
+    if (other == readings.end()) return false;
+    const TextReading own = best();
+    return own.probability > kSure && own.text.find(other->text) == std::string::npos &&
+           other->text.find(own.text) == std::string::npos;
+  }
+
   /// The best text and its probability; empty and 0 where nothing was read. format: how the
   /// garage's other markers are called.
   [[nodiscard]] TextReading best(const TextFormat& format = {}) const {
