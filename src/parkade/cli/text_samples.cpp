@@ -171,9 +171,9 @@ PaintedNumber shaken(PaintedNumber number, Random& random) {
   return number;
 }
 
-// Upside down these may be read as others.
+// Upside down the other digits may be read as digits.
 bool looksLikeTextTurned(const std::string& text) {
-  return text.find_first_not_of("01689-") == std::string::npos;
+  return text.find_first_of("347") == std::string::npos;
 }
 
 void addNumbers(const SemanticSampler& sampler, const SemanticSample& sample, int camera,

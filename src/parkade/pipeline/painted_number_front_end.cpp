@@ -68,25 +68,49 @@ struct PaintedNumberFrontEnd::Impl {
                             T_level_vehicle * eye.T_vehicle_cam);
   }
 
+  // What a patch may say, of those texts whose figures fill the number's width.
+  Result<std::vector<TextReading>> readFilling(const PaintedNumber& number, const cv::Mat& patch,
+                                               const std::string& only) {
+    constexpr double kWidest = 1.2;  // of a figure's height
+    Result<std::vector<TextReading>> readings = reader.read(patch, only);
+    if (!readings) return readings;
+    std::erase_if(*readings, [&](const TextReading& reading) {
+      return !reading.text.empty() &&
+             number.width > kWidest * number.height * static_cast<double>(reading.text.size());
+    });
+    return readings;
+  }
+
+  // Probability of the best text of these letters among all that the patch may say: upside down,
+  // many a number looks more like letters.
+  Result<double> certaintyAmongAll(const PaintedNumber& number, const cv::Mat& patch) {
+    Result<std::vector<TextReading>> readings = readFilling(number, patch, {});
+    if (!readings) return readings.error();
+    std::erase_if(*readings, [&](const TextReading& reading) {
+      return reading.text.find_first_not_of(options.letters) != std::string::npos;
+    });
+    return certaintyOf(*readings);
+  }
+
   // Reads it both ways round until it is known which is right.
-  Result<std::vector<TextReading>> read(const cv::Mat& patch) {
+  Result<std::vector<TextReading>> read(const PaintedNumber& number, const cv::Mat& patch) {
     constexpr double kKnown = 6.0;
     constexpr double kMost = 9.0;
     constexpr double kStep = 1.5;    // one number may look like another one upside down
     constexpr double kLeast = 0.05;  // probability
     cv::Mat turned;
     cv::flip(patch, turned, -1);
-    if (std::abs(upright) > kKnown)
-      return reader.read(upright > 0.0 ? patch : turned, options.letters);
-    auto entering = reader.read(patch, options.letters);
-    if (!entering) return entering;
-    auto leaving = reader.read(turned, options.letters);
-    if (!leaving) return leaving;
-    const double step =
-        std::log((certaintyOf(*entering) + kLeast) / (certaintyOf(*leaving) + kLeast));
-    const bool enters = upright + step > 0.0;
-    upright = std::clamp(upright + std::clamp(step, -kStep, kStep), -kMost, kMost);
-    return enters ? entering : leaving;
+    bool enters = upright > 0.0;
+    if (std::abs(upright) <= kKnown) {
+      const Result<double> entering = certaintyAmongAll(number, patch);
+      if (!entering) return entering.error();
+      const Result<double> leaving = certaintyAmongAll(number, turned);
+      if (!leaving) return leaving.error();
+      const double step = std::log((*entering + kLeast) / (*leaving + kLeast));
+      enters = upright + step > 0.0;
+      upright = std::clamp(upright + std::clamp(step, -kStep, kStep), -kMost, kMost);
+    }
+    return readFilling(number, enters ? patch : turned, options.letters);
   }
 
   Status readSlots(const FrameSet& frames, const BevViews& views, const SE3& T_level_vehicle,
@@ -139,7 +163,8 @@ Status PaintedNumberFrontEnd::Impl::readSlots(const FrameSet& frames, const BevV
       bestSeen(findPaintedNumbers(frame, options.numbers), frames, views, frame, T_level_vehicle);
   all.resize(std::min(all.size(), static_cast<std::size_t>(options.max_reads)));
   for (const Seen& seen : all) {
-    Result<std::vector<TextReading>> readings = read(straighten(seen, frames, T_level_vehicle));
+    Result<std::vector<TextReading>> readings =
+        read(seen.number, straighten(seen, frames, T_level_vehicle));
     if (!readings) return readings.error();
     if (certaintyOf(*readings) < kLikely) continue;
     frame.objects[seen.number.object].text = readings->front().text;
