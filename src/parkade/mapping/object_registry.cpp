@@ -193,19 +193,27 @@ std::vector<MapObject> ObjectRegistry::objects() const {
   for (const Track& track : tracks_) {
     if (exists(track)) order.push_back(&track);
   }
-  std::stable_sort(order.begin(), order.end(), [this](const Track* a, const Track* b) {
-    return existence(*a) > existence(*b);
-  });
+  const auto rank = [this](const Track* track) {
+    return track->semantic_class == SemanticClass::kZoneMarker
+               ? static_cast<double>(track->observations)
+               : existence(*track);
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](const Track* a, const Track* b) { return rank(a) > rank(b); });
   std::vector<const Track*> told;
   for (const Track* track : order) {
-    // Pillars stand farther apart; what lies that near behind one is its smear.
+    // Pillars stand farther apart; what lies that near behind one is its smear, and a marker that
+    // bears the same text the same one, misplaced.
     constexpr double kPillarSpacing = 2.0;  // m
+    const std::string text =
+        track->semantic_class == SemanticClass::kZoneMarker ? track->texts.best() : std::string();
     const bool taken = std::any_of(told.begin(), told.end(), [&](const Track* other) {
       if (other->semantic_class != track->semantic_class) return false;
       const double distance = (other->position - track->position).head<2>().norm();
       return overlapShare(other->outline, track->outline) > options_.duplicate_overlap ||
              (track->semantic_class == SemanticClass::kPillar && sighted_ &&
-              distance < kPillarSpacing);
+              distance < kPillarSpacing) ||
+             (!text.empty() && distance < kPillarSpacing && other->texts.best() == text);
     });
     if (!taken) told.push_back(track);
   }

@@ -346,6 +346,30 @@ TEST(ObjectRegistry, AMarkerThatWasPassedIsMeasuredAgainOrStandsOnAPillar) {
   EXPECT_EQ(told(14.0, 1, 4), 1U);
 }
 
+TEST(ObjectRegistry, OfTwoMarkersThatBearOneTextTheOneMeasuredMoreIsTold) {
+  ObjectObservation marker;
+  marker.semantic_class = SemanticClass::kZoneMarker;
+  marker.position = {20.0, 3.0, 1.6};
+  marker.covariance = 0.01 * Eigen::Matrix3d::Identity();
+  marker.confidence = 0.95;
+  const auto told = [&](const std::string& other, double apart) {
+    ObjectRegistry registry({});
+    for (int k = 0; k < 3; ++k) {
+      ObjectObservation misplaced = marker;
+      misplaced.text = other;
+      misplaced.position.x() += apart;
+      marker.text = "B1";
+      registry.update(k == 0 ? std::vector{misplaced, marker} : std::vector{marker}, SE2(), 0.0, 0);
+    }
+    return registry.objects();
+  };
+  const std::vector<MapObject> one = told("B1", 1.4);
+  ASSERT_EQ(one.size(), 1U);
+  EXPECT_NEAR(one[0].position.x(), 20.0, 1e-9);
+  EXPECT_EQ(told("B2", 1.4).size(), 2U);
+  EXPECT_EQ(told("B1", 2.5).size(), 2U);  // another pillar
+}
+
 // A floor with a 1 m x 0.5 m stop line at (4, 0), labelled for a part of its width.
 BevLabels stopLineLabels(double share) {
   BevLabels labels;
