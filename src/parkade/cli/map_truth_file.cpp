@@ -123,12 +123,19 @@ MapTruth truthOf(const sim::Garage& garage) {
     const bool has_text = marking.semantic_class == SemanticClass::kArrow ||
                           marking.semantic_class == SemanticClass::kSpeedLimitPaint ||
                           isText(marking);
-    const Eigen::Vector2d place = middleOf(marking, marking.polygons);
-    truth.objects.push_back({marking.semantic_class,
-                             {place.x(), place.y(), 0.0},
-                             has_text ? marking.meaning : "",
-                             {},
-                             1});
+    const auto add = [&](const std::vector<Polygon>& polygons) {
+      const Eigen::Vector2d place = middleOf(marking, polygons);
+      truth.objects.push_back({marking.semantic_class,
+                               {place.x(), place.y(), 0.0},
+                               has_text ? marking.meaning : "",
+                               {},
+                               1});
+    };
+    if (marking.semantic_class != SemanticClass::kWheelStop) {
+      add(marking.polygons);
+      continue;
+    }
+    for (const Polygon& one : marking.polygons) add({one});  // of a slot's pair, each
   }
   addSigns(garage, truth);
   return truth;
