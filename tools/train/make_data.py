@@ -4,6 +4,7 @@
 """Makes training samples with the simulator: stitched pictures and camera views with their labels.
 
     tools/train/make_data.py --program build/release/parkade --out DATA --garages 0-99
+    tools/train/make_data.py --out VIEWS --garages 3000-3249 --frames 5 --views
     tools/train/make_data.py --out TEXTS --garages 2000-2131 --frames 8 --texts
 
 Every garage has its own layout, style, light, occupancy, people, rig and attitude errors, drawn from
@@ -37,6 +38,8 @@ def main():
     parser.add_argument("--out", required=True, help="folder of samples")
     parser.add_argument("--garages", default="0-99", help="FIRST-LAST garage seeds")
     parser.add_argument("--frames", type=int, default=16, help="frame sets per garage [16]")
+    parser.add_argument("--views", action="store_true",
+                        help="all cameras' views and no stitched pictures")
     parser.add_argument("--texts", action="store_true",
                         help="straightened texts to learn reading from instead of pictures")
     arguments = parser.parse_args()
@@ -50,6 +53,8 @@ def main():
                    "--samples", arguments.out]
         for name, value in settings(seed, arguments.frames).items():
             command += ["--set", f"{name}={value}"]
+        if arguments.views:
+            command += ["--set", "stitched=false"]
         if arguments.texts:
             command.append("--texts")
         start = time.time()

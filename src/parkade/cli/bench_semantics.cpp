@@ -82,23 +82,28 @@ Status drawAll(const BenchArguments& arguments, const std::vector<int>& seeds,
 }
 
 // A training sample as files: the stitched picture and its labels, and two cameras' pictures with
-// theirs.
+// theirs; where it was not stitched, all cameras'.
 Status writeSample(const SemanticSampler& sampler, const SemanticSample& sample,
                    const std::string& stem) {
   const ImageEncoding png{.png = true, .png_level = 1};
   const ImageEncoding jpeg{.png = false, .jpeg_quality = 95};
   constexpr int kNotSeen = 255;
-  Status status = writeImage(stem + "_bev.png", sample.bev.image, png);
-  cv::Mat labels = sample.bev_labels.clone();
-  labels.setTo(kNotSeen, sample.bev.valid == 0);
-  if (status) status = writeImage(stem + "_bev_labels.png", labels, png);
+  const bool stitched = !sample.bev.image.empty();
+  Status status;
+  if (stitched) {
+    status = writeImage(stem + "_bev.png", sample.bev.image, png);
+    cv::Mat labels = sample.bev_labels.clone();
+    labels.setTo(kNotSeen, sample.bev.valid == 0);
+    if (status) status = writeImage(stem + "_bev_labels.png", labels, png);
+  }
   const std::size_t cameras = sample.frames.images.size();
-  for (std::size_t k = 0; status && k < 2; ++k) {
+  for (std::size_t k = 0; status && k < (stitched ? 2 : cameras); ++k) {
     const std::size_t i =
         (static_cast<std::size_t>(sample.frames.index) + k * (cameras / 2)) % cameras;
-    const int camera = static_cast<int>(i);
-    status = writeImage(fmt::format("{}_raw{}.jpg", stem, k), sample.frames.images[i], jpeg);
-    labels = sampler.cameraLabels(sample, camera);
+    const std::size_t view = stitched ? i : k;
+    const int camera = static_cast<int>(view);
+    status = writeImage(fmt::format("{}_raw{}.jpg", stem, k), sample.frames.images[view], jpeg);
+    cv::Mat labels = sampler.cameraLabels(sample, camera);
     labels.setTo(kNotSeen, sampler.bodyMask(camera) == 0);
     if (status) status = writeImage(fmt::format("{}_raw{}_labels.png", stem, k), labels, png);
   }
@@ -227,8 +232,8 @@ int run(BenchArguments& arguments) {
   if (arguments.texts && arguments.samples.empty()) {
     return fail({"bench semantics: --texts needs --samples DIR"});
   }
-  if (!arguments.options.stitched && !arguments.texts) {
-    return fail({"bench semantics: stitched=false serves --texts alone"});
+  if (!arguments.options.stitched && arguments.samples.empty()) {
+    return fail({"bench semantics: stitched=false serves --samples alone"});
   }
   if (arguments.texts) arguments.options.stitched = false;
   const Status status =
