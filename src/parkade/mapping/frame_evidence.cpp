@@ -5,6 +5,12 @@
 #include "parkade/core/check.hpp"
 
 namespace parkade {
+namespace {
+
+// The confidence level of what may be hidden floor: two in three.
+constexpr int kHidden = 5;
+
+}  // namespace
 
 bool PackedLabels::isMoving(const Eigen::Vector2d& p_level) const {
   return std::any_of(moving.begin(), moving.end(), [&](const Box& box) {
@@ -37,8 +43,11 @@ PackedLabels packLabels(const SemanticFrame& frame) {
     const std::uint8_t* sure = confidence.empty() ? nullptr : confidence.ptr<std::uint8_t>(v);
     const std::uint8_t* smeared = smear.empty() ? nullptr : smear.ptr<std::uint8_t>(v);
     for (int u = 0; u < g.width_px; ++u, ++at) {
-      if (smeared != nullptr && smeared[u] != 0) continue;
-      const int level = sure == nullptr ? PackedLabels::kConfidenceLevels - 1 : sure[u] >> 5;
+      int level = sure == nullptr ? PackedLabels::kConfidenceLevels - 1 : sure[u] >> 5;
+      if (smeared != nullptr && smeared[u] != 0) {
+        if (smeared[u] == SemanticFrame::kSmear) continue;
+        level = std::min(level, kHidden);
+      }
       packed.pixels[at] =
           label[u] == 0 ? 0 : static_cast<std::uint8_t>((label[u] & 0x1F) | (level << 5));
     }
@@ -96,16 +105,19 @@ LayerRole roleOf(SemanticClass semantic_class) {
 
 EvidenceKernel::EvidenceKernel(const EvidenceOptions& options)
     : full_range_(std::min(options.full_range_m, options.range_m - 1e-3)), range_(options.range_m) {
+  const auto inSteps = [](double log_odds) {
+    return static_cast<int>(std::lround(log_odds / GridCell::kStep));
+  };
   for (int level = 0; level < PackedLabels::kConfidenceLevels; ++level) {
     // The middle of the level's interval; a class that is no more likely than not says nothing.
     const double p = std::clamp((level + 0.5) / PackedLabels::kConfidenceLevels, 0.5, 0.95);
     const double log_odds = std::log(p / (1.0 - p));
     for (int w = 0; w <= kWeights; ++w) {
-      steps_[static_cast<std::size_t>(level)][static_cast<std::size_t>(w)] =
-          static_cast<int>(std::lround(options.gain * log_odds * w / kWeights / GridCell::kStep));
+      const double seen = options.gain * log_odds * w / kWeights;
+      steps_[static_cast<std::size_t>(level)][static_cast<std::size_t>(w)] = {
+          inSteps(seen), std::max(std::min(1, inSteps(seen)), inSteps(options.bare_share * seen)),
+          inSteps(options.dynamic_gain * log_odds)};
     }
-    dynamic_steps_[static_cast<std::size_t>(level)] =
-        static_cast<int>(std::lround(options.dynamic_gain * log_odds / GridCell::kStep));
   }
 }
 

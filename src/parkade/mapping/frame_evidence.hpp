@@ -20,6 +20,7 @@ struct EvidenceOptions {
   double full_range_m = 4.0;
   double range_m = 8.5;
   double gain = 0.5;
+  double bare_share = 0.2;
   double dynamic_gain = 1.0;
   double dynamic_half_life_s = 0.7;
 
@@ -29,6 +30,9 @@ struct EvidenceOptions {
     v.field("range_m", range_m, "m", "Ground beyond is not entered.", 1.0, 100.0);
     v.field("gain", gain, "ratio",
             "Share of a picture's log-odds that is new: pictures of one place repeat their errors.",
+            0.01, 1.0);
+    v.field("bare_share", bare_share, "ratio",
+            "Of that, what bare floor counts against paint: worn paint is missed in many pictures.",
             0.01, 1.0);
     v.field("dynamic_gain", dynamic_gain, "ratio", "The same for what moves.", 0.01, 1.0);
     v.field("dynamic_half_life_s", dynamic_half_life_s, "s",
@@ -86,27 +90,29 @@ enum class LayerRole : std::uint8_t {
 };
 LayerRole roleOf(SemanticClass semantic_class);
 
+/// What a pixel says, in steps of GridCell::kStep.
+struct EvidenceSteps {
+  int seen = 0;     ///< for what it shows
+  int bare = 0;     ///< for floor without paint
+  int dynamic = 0;  ///< in layer 5
+};
+
 /// Enters packed pictures in grids: every cell that a picture shows, once, with the evidence of the
 /// pixel nearest to its middle.
 class EvidenceKernel {
  public:
   explicit EvidenceKernel(const EvidenceOptions& options);
 
-  /// Calls cell(i, j, semantic_class, pixel, steps, p_level) for every visible cell of a grid of
-  /// this resolution; j (y) is the outer loop. T_map_vehicle: the levelled vehicle.
+  /// Calls cell(i, j, semantic_class, steps, p_level) for every visible cell of a grid of this
+  /// resolution; j (y) is the outer loop. T_map_vehicle: the levelled vehicle.
   template <class Visit>
   void forEachCell(const PackedLabels& labels, const SE2& T_map_vehicle, double resolution,
                    const Visit& cell) const;
 
-  [[nodiscard]] int dynamicSteps(int level) const {
-    return dynamic_steps_[static_cast<std::size_t>(level)];
-  }
-
  private:
   static constexpr int kWeights = 16;
-  /// In steps, by confidence level and weight by distance.
-  std::array<std::array<int, kWeights + 1>, PackedLabels::kConfidenceLevels> steps_{};
-  std::array<int, PackedLabels::kConfidenceLevels> dynamic_steps_{};
+  /// By confidence level and weight by distance.
+  std::array<std::array<EvidenceSteps, kWeights + 1>, PackedLabels::kConfidenceLevels> steps_{};
   double full_range_;
   double range_;
 };
@@ -155,9 +161,9 @@ void EvidenceKernel::forEachCell(const PackedLabels& labels, const SE2& T_map_ve
         weight =
             static_cast<int>(kWeights * (range_ - std::sqrt(distance2)) / (range_ - full_range_));
       }
-      const int steps = steps_[static_cast<std::size_t>(PackedLabels::levelOf(pixel))]
-                              [static_cast<std::size_t>(weight)];
-      if (steps > 0) cell(i, j, PackedLabels::classOf(pixel), pixel, steps, p);
+      const EvidenceSteps& steps = steps_[static_cast<std::size_t>(PackedLabels::levelOf(pixel))]
+                                         [static_cast<std::size_t>(weight)];
+      if (steps.seen > 0) cell(i, j, PackedLabels::classOf(pixel), steps, p);
     }
   }
 }

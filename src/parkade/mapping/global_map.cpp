@@ -123,11 +123,10 @@ void GlobalMap::Impl::enter(LayeredGrid& target, const PackedLabels& labels,
   const std::array<TileCursor*, kNumGridLayers> cursors = {&lines, &free, &markers, &zones,
                                                            &dynamic};
   kernel.forEachCell(labels, T_map_vehicle, target.resolution(),
-                     [&](int i, int j, SemanticClass c, std::uint8_t pixel, int steps,
+                     [&](int i, int j, SemanticClass c, const EvidenceSteps& steps,
                          const Eigen::Vector2d& p_level) {
                        updateLayers(
-                           labels, c, steps, kernel.dynamicSteps(PackedLabels::levelOf(pixel)),
-                           p_level,
+                           labels, c, steps, p_level,
                            [&](GridLayer l) -> GridCell& {
                              return cursors[static_cast<std::size_t>(l)]->touch(i, j);
                            },

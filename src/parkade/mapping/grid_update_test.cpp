@@ -35,12 +35,59 @@ TEST(FrameEvidence, SmearSaysNothing) {
   frame.labels.labels = cv::Mat(g.height_px, g.width_px, CV_8UC1, cv::Scalar(1));
   frame.labels.labels.at<std::uint8_t>(7, 9) = static_cast<std::uint8_t>(SemanticClass::kPillar);
   frame.smear = cv::Mat(g.height_px, g.width_px, CV_8UC1, cv::Scalar(0));
-  frame.smear.at<std::uint8_t>(7, 9) = 255;
+  frame.smear.at<std::uint8_t>(7, 9) = SemanticFrame::kSmear;
   const auto at = static_cast<std::size_t>(7 * g.width_px + 9);
   EXPECT_EQ(packLabels(frame).pixels[at], 0);
   EXPECT_NE(packLabels(frame).pixels[at + 1], 0);
   frame.smear = cv::Mat();
   EXPECT_EQ(PackedLabels::classOf(packLabels(frame).pixels[at]), SemanticClass::kPillar);
+}
+
+// The cell 2 m before the car's middle after pictures of it that all show one class everywhere.
+struct ManyPictures {
+  LocalMap map{LocalMapOptions()};
+  TimeNs t_ns = 0;
+
+  void show(SemanticClass c, int pictures, std::uint8_t smear = 0) {
+    SemanticFrame frame;
+    const BevGeometry& g = frame.labels.geometry;
+    frame.labels.labels =
+        cv::Mat(g.height_px, g.width_px, CV_8UC1, cv::Scalar(static_cast<int>(c)));
+    frame.smear = cv::Mat(g.height_px, g.width_px, CV_8UC1, cv::Scalar(smear));
+    for (int k = 0; k < pictures; ++k) map.update(packLabels(frame), t_ns += 100'000'000, SE2());
+  }
+  [[nodiscard]] SemanticClass at(GridLayer layer) const {
+    return map.at(layer, {40, 0}).semantic_class;
+  }
+};
+
+TEST(FrameEvidence, FloorOverrulesWhatLiesBehindAnEdge) {
+  ManyPictures foot;
+  foot.show(SemanticClass::kPillar, 3);
+  foot.show(SemanticClass::kFloor, 1);
+  EXPECT_EQ(foot.at(GridLayer::kZoneMarkers), SemanticClass::kPillar);
+  ManyPictures hidden;
+  hidden.show(SemanticClass::kPillar, 3, SemanticFrame::kBehindEdge);
+  EXPECT_EQ(hidden.at(GridLayer::kZoneMarkers), SemanticClass::kPillar);
+  hidden.show(SemanticClass::kFloor, 1);
+  EXPECT_EQ(hidden.at(GridLayer::kZoneMarkers), SemanticClass::kFloor);
+}
+
+TEST(FrameEvidence, PaintMayBeMissedInSomePictures) {
+  ManyPictures line;
+  line.show(SemanticClass::kSlotLine, 1);
+  line.show(SemanticClass::kFloor, 3);
+  EXPECT_EQ(line.at(GridLayer::kParkingLines), SemanticClass::kSlotLine);
+  line.show(SemanticClass::kFloor, 6);
+  EXPECT_EQ(line.at(GridLayer::kParkingLines), SemanticClass::kFloor);
+  ManyPictures arrow;
+  arrow.show(SemanticClass::kArrow, 1);
+  arrow.show(SemanticClass::kFloor, 3);
+  EXPECT_EQ(arrow.at(GridLayer::kRoadMarkers), SemanticClass::kArrow);
+  ManyPictures car;
+  car.show(SemanticClass::kVehicle, 1);
+  car.show(SemanticClass::kFloor, 3);
+  EXPECT_EQ(car.at(GridLayer::kAvailability), SemanticClass::kFloor);
 }
 
 TEST(LocalMap, ShowsWhatIsAroundAndForgetsWhatLeaves) {

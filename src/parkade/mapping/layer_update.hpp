@@ -7,10 +7,10 @@
 namespace parkade {
 
 /// What one visible pixel says of the five layers of its cell; the rule that the local and the
-/// global map share. touch(layer) gives the cell to change, has_dynamic() whether layer 5 knows the
-/// cell (it is not made for ground that was never dynamic).
+/// global map share. steps: EvidenceKernel's. touch(layer) gives the cell to change, has_dynamic()
+/// whether layer 5 knows the cell (it is not made for ground that was never dynamic).
 template <class Touch, class HasDynamic>
-void updateLayers(const PackedLabels& labels, SemanticClass c, int steps, int dynamic_steps,
+void updateLayers(const PackedLabels& labels, SemanticClass c, const EvidenceSteps& steps,
                   const Eigen::Vector2d& p_level, const Touch& touch,
                   const HasDynamic& has_dynamic) {
   const LayerRole role = roleOf(c);
@@ -21,25 +21,28 @@ void updateLayers(const PackedLabels& labels, SemanticClass c, int steps, int dy
     case LayerRole::kLine:
     case LayerRole::kRoadMarker: {
       constexpr SemanticClass kFloor = SemanticClass::kFloor;
-      addSteps(touch(GridLayer::kParkingLines), role == LayerRole::kLine ? c : kFloor, steps);
-      addSteps(touch(GridLayer::kAvailability), kFloor, steps);
-      addSteps(touch(GridLayer::kRoadMarkers), role == LayerRole::kRoadMarker ? c : kFloor, steps);
-      addSteps(touch(GridLayer::kZoneMarkers), kFloor, steps);
-      if (has_dynamic()) addSteps(touch(GridLayer::kDynamic), kFloor, dynamic_steps);
+      const bool line = role == LayerRole::kLine;
+      const bool marker = role == LayerRole::kRoadMarker;
+      addSteps(touch(GridLayer::kParkingLines), line ? c : kFloor, line ? steps.seen : steps.bare);
+      addSteps(touch(GridLayer::kAvailability), kFloor, steps.seen);
+      addSteps(touch(GridLayer::kRoadMarkers), marker ? c : kFloor,
+               marker ? steps.seen : steps.bare);
+      addSteps(touch(GridLayer::kZoneMarkers), kFloor, steps.seen);
+      if (has_dynamic()) addSteps(touch(GridLayer::kDynamic), kFloor, steps.dynamic);
       return;
     }
     case LayerRole::kStructure:
-      addSteps(touch(GridLayer::kZoneMarkers), c, steps);
+      addSteps(touch(GridLayer::kZoneMarkers), c, steps.seen);
       return;
     case LayerRole::kVehicle:
       if (labels.isMoving(p_level)) {
-        addSteps(touch(GridLayer::kDynamic), c, dynamic_steps);
+        addSteps(touch(GridLayer::kDynamic), c, steps.dynamic);
       } else {
-        addSteps(touch(GridLayer::kAvailability), c, steps);
+        addSteps(touch(GridLayer::kAvailability), c, steps.seen);
       }
       return;
     case LayerRole::kPerson:
-      addSteps(touch(GridLayer::kDynamic), c, dynamic_steps);
+      addSteps(touch(GridLayer::kDynamic), c, steps.dynamic);
       return;
   }
 }

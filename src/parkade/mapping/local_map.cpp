@@ -66,13 +66,13 @@ void LocalMap::update(const PackedLabels& labels, TimeNs t_ns, const SE2& T_map_
   started_ = true;
   t_ns_ = t_ns;
   kernel_.forEachCell(labels, T_map_vehicle, resolution_,
-                      [&](int i, int j, SemanticClass c, std::uint8_t pixel, int steps,
+                      [&](int i, int j, SemanticClass c, const EvidenceSteps& steps,
                           const Eigen::Vector2d& p_level) {
                         if (!contains({i, j})) return;
                         const std::size_t at = indexOf(i, j);
                         updateLayers(
-                            labels, c, steps, kernel_.dynamicSteps(PackedLabels::levelOf(pixel)),
-                            p_level, [&](GridLayer l) -> GridCell& { return layer(l)[at]; },
+                            labels, c, steps, p_level,
+                            [&](GridLayer l) -> GridCell& { return layer(l)[at]; },
                             [&] { return layer(GridLayer::kDynamic)[at].known(); });
                       });
 }

@@ -14,11 +14,45 @@ namespace {
 
 // Of the sight line up to a pixel.
 struct Sight {
-  float structure = 0.0F;  // m of it, as far as blocked: since it was first met
-  float vehicle = 0.0F;    // m
-  bool blocked = false;    // by structure, for good: nothing on the ground is seen behind
+  float structure = 0.0F;   // m of it, as far as blocked: since it was first met
+  float vehicle = 0.0F;     // m
+  float wheel_stop = 0.0F;  // m
+  bool blocked = false;     // by structure, for good: nothing on the ground is seen behind
   bool behind_car = false;
 };
+
+bool isStructure(SemanticClass c) {
+  return c == SemanticClass::kWall || c == SemanticClass::kPillar ||
+         c == SemanticClass::kZoneMarker;
+}
+
+// Goes on by a pixel of class c. least: m of something upright that block the sight.
+void goOn(Sight& sight, SemanticClass c, float length, float least) {
+  if (c == SemanticClass::kVehicle) {
+    sight.vehicle += length;
+    sight.behind_car = sight.behind_car || (!sight.blocked && sight.vehicle >= least);
+  } else {
+    sight.vehicle = 0.0F;
+  }
+  if (isStructure(c) || sight.blocked) {
+    sight.structure += length;
+    sight.blocked = sight.blocked || sight.structure >= least;
+  } else {
+    sight.structure = 0.0F;
+  }
+  sight.wheel_stop = c == SemanticClass::kWheelStop ? sight.wheel_stop + length : 0.0F;
+}
+
+std::uint8_t smearOf(const Sight& sight, SemanticClass c, const SmearOptions& options) {
+  if (c == SemanticClass::kWheelStop) {
+    return sight.wheel_stop > options.wheel_stop_depth_m ? SemanticFrame::kSmear : 0;
+  }
+  if (!isStructure(c)) return 0;
+  const bool wall = c == SemanticClass::kWall;
+  const double depth = wall ? options.wall_depth_m : options.pillar_depth_m;
+  if (sight.behind_car || sight.structure > depth) return SemanticFrame::kSmear;
+  return !wall && sight.structure > options.edge_m ? SemanticFrame::kBehindEdge : 0;
+}
 
 }  // namespace
 
@@ -67,25 +101,10 @@ cv::Mat SmearFinder::find(const BevLabels& labels) const {
     for (const Step& step : outwards_) {
       Sight sight;
       if (step.before >= 0) sight = sights[static_cast<std::size_t>(step.before)];
-      const auto semantic_class = static_cast<SemanticClass>(labels.labels.data[step.pixel]);
-      const bool wall = semantic_class == SemanticClass::kWall;
-      const bool structure = wall || semantic_class == SemanticClass::kPillar ||
-                             semantic_class == SemanticClass::kZoneMarker;
-      if (semantic_class == SemanticClass::kVehicle) {
-        sight.vehicle += step.length;
-        sight.behind_car = sight.behind_car || (!sight.blocked && sight.vehicle >= least);
-      } else {
-        sight.vehicle = 0.0F;
-      }
-      if (structure || sight.blocked) {
-        sight.structure += step.length;
-        sight.blocked = sight.blocked || sight.structure >= least;
-      } else {
-        sight.structure = 0.0F;
-      }
+      const auto c = static_cast<SemanticClass>(labels.labels.data[step.pixel]);
+      goOn(sight, c, step.length, least);
       sights[static_cast<std::size_t>(step.pixel)] = sight;
-      const double depth = wall ? options_.wall_depth_m : options_.pillar_depth_m;
-      smear.data[step.pixel] = structure && (sight.behind_car || sight.structure > depth) ? 255 : 0;
+      smear.data[step.pixel] = smearOf(sight, c, options_);
     }
   }
   return smear;

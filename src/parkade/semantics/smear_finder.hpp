@@ -12,8 +12,10 @@
 namespace parkade {
 
 struct SmearOptions {
-  double pillar_depth_m = 0.6;
+  double pillar_depth_m = 0.45;
   double wall_depth_m = 0.3;
+  double edge_m = 0.15;
+  double wheel_stop_depth_m = 0.2;
   double least_m = 0.2;
 
   void visit(OptionVisitor& v) {
@@ -21,6 +23,11 @@ struct SmearOptions {
             "Of a pillar's labels, so much behind its near edge is taken for its place.", 0.05,
             10.0);
     v.field("wall_depth_m", wall_depth_m, "m", "The same of a wall's.", 0.05, 10.0);
+    v.field("edge_m", edge_m, "m",
+            "Of that, so much is surely its place; the rest may as well be hidden floor.", 0.0,
+            10.0);
+    v.field("wheel_stop_depth_m", wheel_stop_depth_m, "m",
+            "What a wheel stop is deep; the floor behind it is seen again.", 0.05, 1.0);
     v.field("least_m", least_m, "m",
             "Structure that a sight line must cross before it counts as blocked.", 0.0, 2.0);
   }
@@ -28,14 +35,14 @@ struct SmearOptions {
 
 /// A bird's-eye picture draws pillars and walls all the way from where they stand to where the
 /// sight line leaves their top; only the near edge lies where it is drawn. A map that believes the
-/// rest grows streaks behind everything upright. Finds what is labelled pillar, wall or zone marker
-/// deeper behind the near edge than such a thing is thick, seen from the camera of that part of the
-/// picture, or behind a car, which hides where it stands.
+/// rest grows streaks behind everything upright. Finds what is labelled pillar, wall, zone marker
+/// or wheel stop deeper behind the near edge than such a thing is thick, seen from the camera of
+/// that part of the picture, or behind a car, which hides where it stands.
 class SmearFinder {
  public:
   SmearFinder(const BevGeometry& geometry, const BevViews& views, const SmearOptions& options);
 
-  /// CV_8UC1: 255 where a label is smear. labels: of the geometry given at first (checked).
+  /// SemanticFrame::smear. labels: of the geometry given at first (checked).
   [[nodiscard]] cv::Mat find(const BevLabels& labels) const;
 
  private:

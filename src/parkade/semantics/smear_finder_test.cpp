@@ -26,10 +26,10 @@ SmearFinder finderOf(const PaintedFloor& floor, const SmearOptions& options = {}
 
 TEST(SmearFinder, KeepsTheNearEdgeOnly) {
   PaintedFloor floor = smearedPillar();
-  floor.labels.labels.setTo(0, finderOf(floor).find(floor.labels));
+  floor.labels.labels.setTo(0, finderOf(floor).find(floor.labels) == SemanticFrame::kSmear);
   const LabelProbe probe(floor.labels);
   EXPECT_EQ(probe.at({4.1, 0.0}), SemanticClass::kPillar);
-  EXPECT_EQ(probe.at({4.5, 0.2}), SemanticClass::kPillar);
+  EXPECT_EQ(probe.at({4.4, 0.2}), SemanticClass::kPillar);
   for (const double x : {4.8, 6.0, 8.5}) {
     for (const double y : {-0.2, 0.0, 0.2}) {
       EXPECT_EQ(probe.at({x, y}), SemanticClass::kUnknown) << x << ", " << y;
@@ -38,10 +38,41 @@ TEST(SmearFinder, KeepsTheNearEdgeOnly) {
   EXPECT_EQ(probe.at({5.0, 2.0}), SemanticClass::kFloor);
 }
 
+TEST(SmearFinder, OnlyTheEdgeIsSure) {
+  const PaintedFloor floor = smearedPillar();
+  const cv::Mat smear = finderOf(floor).find(floor.labels);
+  const auto at = [&](double x) {
+    const Vector2d q = floor.labels.geometry.toPixel({x, 0.0});
+    return int{smear.at<std::uint8_t>(static_cast<int>(q.y()), static_cast<int>(q.x()))};
+  };
+  EXPECT_EQ(at(3.8), 0);
+  EXPECT_EQ(at(4.07), 0);
+  EXPECT_EQ(at(4.3), SemanticFrame::kBehindEdge);
+  EXPECT_EQ(at(5.0), SemanticFrame::kSmear);
+}
+
+TEST(SmearFinder, FloorIsSeenAgainBehindAWheelStop) {
+  PaintedFloor floor;
+  for (const double x : {4.0, 6.0}) {
+    floor.polygon({{x, -0.8}, {x + 0.6, -0.9}, {x + 0.6, 0.9}, {x, 0.8}}, SemanticClass::kWheelStop,
+                  200);
+  }
+  const cv::Mat smear = finderOf(floor).find(floor.labels);
+  for (const double x : {4.0, 6.0}) {
+    const auto at = [&](double behind) {
+      const Vector2d q = floor.labels.geometry.toPixel({x + behind, 0.3});
+      return int{smear.at<std::uint8_t>(static_cast<int>(q.y()), static_cast<int>(q.x()))};
+    };
+    EXPECT_EQ(at(0.1), 0) << x;
+    EXPECT_EQ(at(0.3), SemanticFrame::kSmear) << x;
+    EXPECT_EQ(at(0.5), SemanticFrame::kSmear) << x;
+  }
+}
+
 TEST(SmearFinder, HolesInASmearAreNoNewEdges) {
   PaintedFloor floor = smearedPillar();
   floor.polygon({{5.5, -0.9}, {6.5, -0.9}, {6.5, 0.9}, {5.5, 0.9}}, SemanticClass::kFloor, 90);
-  floor.labels.labels.setTo(0, finderOf(floor).find(floor.labels));
+  floor.labels.labels.setTo(0, finderOf(floor).find(floor.labels) == SemanticFrame::kSmear);
   const LabelProbe probe(floor.labels);
   EXPECT_EQ(probe.at({6.6, 0.0}), SemanticClass::kUnknown);
   EXPECT_EQ(probe.at({6.0, 0.0}), SemanticClass::kFloor);  // only structure is doubted
@@ -56,7 +87,7 @@ TEST(SmearFinder, GoesOnAcrossSeams) {
   const int seam = static_cast<int>(g.toPixel({6.5, 0.0}).y());
   views.view_of.rowRange(0, seam).setTo(1);
   const cv::Mat smear = SmearFinder(g, views, {}).find(floor.labels);
-  floor.labels.labels.setTo(0, smear);
+  floor.labels.labels.setTo(0, smear == SemanticFrame::kSmear);
   const LabelProbe probe(floor.labels);
   for (double y = -0.15; y < 0.2; y += 0.04) {
     EXPECT_EQ(probe.at({6.55, y}), SemanticClass::kUnknown) << y;
@@ -66,7 +97,7 @@ TEST(SmearFinder, GoesOnAcrossSeams) {
 TEST(SmearFinder, WhatACarHidesHasNoPlace) {
   PaintedFloor floor = smearedPillar();
   floor.polygon({{3.0, -1.0}, {4.0, -1.0}, {4.0, 0.0}, {3.0, 0.0}}, SemanticClass::kVehicle, 40);
-  floor.labels.labels.setTo(0, finderOf(floor).find(floor.labels));
+  floor.labels.labels.setTo(0, finderOf(floor).find(floor.labels) == SemanticFrame::kSmear);
   const LabelProbe probe(floor.labels);
   EXPECT_EQ(probe.at({4.2, -0.15}), SemanticClass::kUnknown);
   EXPECT_EQ(probe.at({4.2, 0.15}), SemanticClass::kPillar);
@@ -78,7 +109,7 @@ TEST(SmearFinder, WallsAreThinAndSpecksBlockNothing) {
   floor.polygon({{4.0, -3.0}, {9.0, -3.0}, {9.0, 3.0}, {4.0, 3.0}}, SemanticClass::kWall, 60);
   floor.polygon({{-2.0, 0.0}, {-2.0, 0.1}, {-2.1, 0.1}, {-2.1, 0.0}}, SemanticClass::kPillar, 60);
   floor.polygon({{-4.0, -0.3}, {-4.0, 0.3}, {-4.4, 0.3}, {-4.4, -0.3}}, SemanticClass::kPillar, 60);
-  floor.labels.labels.setTo(0, finderOf(floor).find(floor.labels));
+  floor.labels.labels.setTo(0, finderOf(floor).find(floor.labels) == SemanticFrame::kSmear);
   const LabelProbe probe(floor.labels);
   EXPECT_EQ(probe.at({4.2, 0.5}), SemanticClass::kWall);
   EXPECT_EQ(probe.at({4.5, 0.5}), SemanticClass::kUnknown);

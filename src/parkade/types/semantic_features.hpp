@@ -103,9 +103,12 @@ struct MovingObservation {
 /// All semantic features of one frame set.
 struct SemanticFrame {
   BevLabels labels;
-  /// CV_8UC1 of the labels' size, or empty: 255 where a label is what a picture draws of something
-  /// upright behind its foot, and says nothing of the ground there.
+  /// CV_8UC1 of the labels' size, or empty: kSmear where a label is what a picture draws of
+  /// something upright behind its foot, and says nothing of the ground there; kBehindEdge where it
+  /// may be its foot, or floor that it hides; else 0.
   cv::Mat smear;
+  static constexpr std::uint8_t kSmear = 255;
+  static constexpr std::uint8_t kBehindEdge = 128;
   GroundAttitude attitude;      ///< that the picture was levelled with
   double attitude_sigma = 0.0;  ///< rad, of its pitch and roll
   std::vector<LinePoint> line_points;
