@@ -60,6 +60,26 @@ TEST(RowCompletion, FillsABayThatShowsItsPaint) {
   }
 }
 
+// Three slots of the row's width would fit as well, but a line goes in amid the second.
+TEST(RowCompletion, FillsABayWithTwoWideSlots) {
+  Garage garage;
+  garage.tell(0, {0, 1, 2});
+  garage.tell(2, {0, 1, 2});
+  garage.paintTold();
+  std::vector<MapSlot> wide;
+  for (int place = 0; place < 2; ++place) {
+    MapSlot slot = Garage::slotAt(1, 0);
+    const double x = slot.corners[0].x() + 1.5 * kWidth * place;
+    slot.corners = {Vector2d(x, 0.0), Vector2d(x + 1.5 * kWidth, 0.0),
+                    Vector2d(x + 1.5 * kWidth, kDepth), Vector2d(x, kDepth)};
+    wide.push_back(slot);
+    garage.paint(slot);
+  }
+  const RowCompletion rows = garage.complete();
+  ASSERT_EQ(rows.added.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) expectAt(rows.added[i], wide[i]);
+}
+
 TEST(RowCompletion, LeavesABareBayAlone) {
   Garage garage;
   garage.tell(0, {0, 1, 2});

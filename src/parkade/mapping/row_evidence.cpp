@@ -118,6 +118,31 @@ void lookInside(const GridProbe& probe, const Corners& c, double step, SlotEvide
   }
 }
 
+// Share of its first metre that is painted, of the line that goes in between the sides and shows
+// best; 0 where there is paint beside it as well, as where an area is hatched.
+double dividerOf(const GridProbe& probe, const Corners& c) {
+  constexpr double kFromSide = 0.4;  // m
+  constexpr double kFromEntrance = 0.15;
+  constexpr double kLength = 1.0;
+  constexpr double kMostBeside = 0.1;
+  const double width = (c[1] - c[0]).norm();
+  const Vector2d u = (c[1] - c[0]) / width;
+  const Vector2d inward = (c[3] - c[0]).normalized();
+  const auto look = [&](double s) {
+    const Vector2d from = c[0] + s * u + kFromEntrance * inward;
+    const GridProbe::Share share = probe.along(from, from + kLength * inward);
+    return share.painted * share.seen_m / kLength;
+  };
+  double most = 0.0;
+  for (double s = kFromSide; s <= width - kFromSide; s += 0.05) {
+    const double painted = look(s);
+    if (painted > most && look(s - 0.3) < kMostBeside && look(s + 0.3) < kMostBeside) {
+      most = painted;
+    }
+  }
+  return most;
+}
+
 }  // namespace
 
 SlotEvidence gatherEvidence(const LayeredGrid& grid, const Corners& c) {
@@ -133,6 +158,7 @@ SlotEvidence gatherEvidence(const LayeredGrid& grid, const Corners& c) {
   evidence.right = probe.line(c[1] + kFromCorner * inward, c[1] + deep * inward, n);
   evidence.entrance =
       probe.line(c[0] + kFromCorner * u, c[1] - kFromCorner * u, Vector2d(-u.y(), u.x()));
+  evidence.divider = dividerOf(probe, c);
   int lanes = 0;
   int samples = 0;
   for (double s = kFromCorner; s < (c[1] - c[0]).norm() - kFromCorner; s += grid.resolution()) {

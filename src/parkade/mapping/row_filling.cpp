@@ -27,14 +27,15 @@ class GapFiller {
 
   // None where they are not likely.
   [[nodiscard]] Filling fill(const Gap& gap) const {
-    if (gap.at_begin == GapEnd::kOpen || gap.at_end == GapEnd::kOpen) return extend(gap);
-    const Fit fit = fitSlots(gap);
-    std::vector<Place> places;
-    for (int i = 0; i < fit.count; ++i) {
-      const double begin = fit.begin + i * fit.front;
-      places.push_back(placeAt(begin, begin + fit.front));
-    }
-    return weigh(gap, places);
+    if (isOpen(gap)) return extend(gap);
+    return weigh(gap, placesOf(fitSlots(gap)), 0.0);
+  }
+
+  // The same with wide slots, as for wheelchairs, of which there are few.
+  [[nodiscard]] Filling fillWide(const Gap& gap) const {
+    constexpr double kSeldom = -3.0;
+    if (isOpen(gap) || pattern_.shape != SlotShape::kPerpendicular) return {};
+    return weigh(gap, placesOf(fitWideSlots(gap)), kSeldom);
   }
 
  private:
@@ -42,6 +43,9 @@ class GapFiller {
     MapSlot slot;
     SlotEvidence evidence;
   };
+  static bool isOpen(const Gap& gap) {
+    return gap.at_begin == GapEnd::kOpen || gap.at_end == GapEnd::kOpen;
+  }
   // How many slots fill a gap, if they do. Beside pillars they leave margins that other slots of
   // the garage leave as well: those seen most often, and that fit best.
   struct Fit {
@@ -51,9 +55,7 @@ class GapFiller {
     double merit = 0.0;
   };
   [[nodiscard]] Fit fitSlots(const Gap& gap) const {
-    static const std::vector<Margin> kNone = {{0.0, 0}};
-    const std::vector<Margin>& before = gap.at_begin == GapEnd::kPillar ? pattern_.before : kNone;
-    const std::vector<Margin>& after = gap.at_end == GapEnd::kPillar ? pattern_.after : kNone;
+    const auto [before, after] = marginsOf(gap);
     const bool stretches = gap.at_begin == GapEnd::kSlot && gap.at_end == GapEnd::kSlot;
     const double length = gap.end - gap.begin;
     constexpr int kMost = 9;
@@ -76,6 +78,43 @@ class GapFiller {
       }
     }
     return best;
+  }
+
+  // The same of slots as wide as such ones are: the margins that were seen most often, and all
+  // that is left between them.
+  [[nodiscard]] Fit fitWideSlots(const Gap& gap) const {
+    constexpr double kLeastFront = 3.2;  // m; 3.5 m by DIN 18040-1
+    constexpr double kMostFront = 4.0;
+    const auto [before, after] = marginsOf(gap);
+    Fit best;
+    for (const Margin& b : before) {
+      for (const Margin& a : after) {
+        const double rest = gap.end - gap.begin - b.length - a.length;
+        const int count = std::max(1, static_cast<int>(rest / kLeastFront));
+        const double front = rest / count;
+        if (front < kLeastFront || front > kMostFront) continue;
+        const double merit = b.seen + a.seen;
+        if (best.count > 0 && merit <= best.merit) continue;
+        best = {count, gap.begin + b.length, front, merit};
+      }
+    }
+    return best;
+  }
+
+  [[nodiscard]] std::pair<std::vector<Margin>, std::vector<Margin>> marginsOf(
+      const Gap& gap) const {
+    static const std::vector<Margin> kNone = {{0.0, 0}};
+    return {gap.at_begin == GapEnd::kPillar ? pattern_.before : kNone,
+            gap.at_end == GapEnd::kPillar ? pattern_.after : kNone};
+  }
+
+  [[nodiscard]] std::vector<Place> placesOf(const Fit& fit) const {
+    std::vector<Place> places;
+    for (int i = 0; i < fit.count; ++i) {
+      const double begin = fit.begin + i * fit.front;
+      places.push_back(placeAt(begin, begin + fit.front));
+    }
+    return places;
   }
 
   // Where nothing bounds a row each further slot must show itself.
@@ -111,8 +150,8 @@ class GapFiller {
   }
 
   // Between two slots there is hardly room for anything else; a bay between two pillars may hold
-  // anything.
-  [[nodiscard]] Filling weigh(const Gap& gap, const std::vector<Place>& places) const {
+  // anything. more: what else the prior log-odds hold.
+  [[nodiscard]] Filling weigh(const Gap& gap, const std::vector<Place>& places, double more) const {
     const bool after_slot = gap.at_begin == GapEnd::kSlot;
     const bool before_slot = gap.at_end == GapEnd::kSlot;
     constexpr double kBetween = 3.0;
@@ -127,6 +166,7 @@ class GapFiller {
       prior += kNextBay * (hasSlotBy(gap.end, false) ? 1.0 : 0.0);
     }
     if (!pattern_.of_row) prior += kOtherShape;
+    prior += more;
     Filling filling;
     SlotEvidence::Line entrance;
     double known = 0.0;
@@ -189,8 +229,9 @@ std::vector<Filling> findFillings(const std::vector<MapSlot>& told,
     for (const Pattern& pattern : patterns[i]) {
       const GapFiller filler(told, row, pattern, grid, likelihood, options);
       for (const Gap& gap : findGaps(row, pattern, pillars, options.reach_m)) {
-        Filling filling = filler.fill(gap);
-        if (!filling.slots.empty()) fillings.push_back(std::move(filling));
+        for (const Filling& filling : {filler.fill(gap), filler.fillWide(gap)}) {
+          if (!filling.slots.empty()) fillings.push_back(filling);
+        }
       }
     }
   }

@@ -67,9 +67,10 @@ bool isDenied(const SlotEvidence& evidence) {
   constexpr double kLines = 0.03;
   constexpr double kStructure = 0.08;
   constexpr double kLaneAhead = 0.6;
+  constexpr double kDivider = 0.7;
   return evidence.markers_inside > kMarkers || evidence.lanes_inside > kLanes ||
          evidence.lines_inside > kLines || evidence.structure_inside > kStructure ||
-         evidence.lane_ahead > kLaneAhead;
+         evidence.lane_ahead > kLaneAhead || evidence.divider > kDivider;
 }
 
 void setFree(const SlotEvidence& evidence, MapSlot& slot) {
