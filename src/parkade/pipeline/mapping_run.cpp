@@ -15,6 +15,7 @@
 #include "parkade/pipeline/semantic_queue.hpp"
 #include "parkade/pipeline/thread_pool.hpp"
 #include "parkade/tracking/overlap.hpp"
+#include "parkade/vio/length_error.hpp"
 
 namespace parkade {
 namespace {
@@ -202,6 +203,7 @@ void MappingRun::Impl::estimate(Estimation& work) {
     semantics->enterDue(work.number);
     fused = mapper->estimate();
   }
+  addLengthError(estimator_.lengthSigma(), fused);
   if (estimate.health != Health::kInitialising) {
     odometry.push_back({estimate.t_ns, estimate.T_odom_vehicle});
     trajectory.push_back({fused.t_ns, fused.T_odom_vehicle});

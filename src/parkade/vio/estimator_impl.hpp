@@ -33,6 +33,7 @@ class VioEstimator::Impl {
   std::vector<Landmark> landmarks() const;
   Trajectory finalTrajectory() const;
   std::vector<CameraCalibrationEstimate> calibration() const;
+  double lengthSigma() const;
 
   VioStatistics statistics;
   TimeNs last_t_ns = 0;
