@@ -119,6 +119,8 @@ class SlotScore : public SampleScore {
   int matched_ = 0;
   int decided_ = 0;
   int decided_right_ = 0;
+  int free_told_taken_ = 0;
+  int taken_told_free_ = 0;
   std::array<Bin, kSlotBins.size() - 1> bins_;
   std::array<Count, 3> shapes_;
   std::array<Count, 4> markings_;
@@ -190,7 +192,11 @@ void SlotScore::measure(const BevGeometry& geometry, const SlotObservation& foun
   constexpr double kSure = 0.1;
   if (std::abs(found.probability_free - 0.5) < kSure) return;
   ++decided_;
-  if ((found.probability_free < 0.5) == truth.occupied) ++decided_right_;
+  if ((found.probability_free < 0.5) == truth.occupied) {
+    ++decided_right_;
+  } else {
+    ++(truth.occupied ? taken_told_free_ : free_told_taken_);
+  }
 }
 
 void SlotScore::compare(const BevGeometry& geometry, const std::vector<SlotObservation>& found,
@@ -265,6 +271,8 @@ std::string SlotScore::table() const {
                  precision());
   fmt::format_to(out, "free or occupied     {:>6} told, right {:.4f}; not told {}\n", decided_,
                  decidedRight(), matched_ - decided_);
+  fmt::format_to(out, "                     {} free told occupied, {} occupied told free\n",
+                 free_told_taken_, taken_told_free_);
   constexpr std::array<const char*, 3> kShapes = {"perpendicular", "parallel", "slanted"};
   constexpr std::array<const char*, 4> kMarkings = {"closed", "T", "L", "open"};
   const auto counts = [&](const char* name, const Count& count) {
@@ -297,6 +305,8 @@ void SlotScore::writeTo(nlohmann::json& metrics) const {
   slots["recall"] = recall();
   slots["precision"] = precision();
   slots["availability_right"] = decidedRight();
+  slots["free_told_occupied"] = free_told_taken_;
+  slots["occupied_told_free"] = taken_told_free_;
   slots["availability_told"] = matched_ > 0 ? static_cast<double>(decided_) / matched_ : 0.0;
   const std::vector<double> near = nearErrors();
   slots["corner_median_to_5m"] = quantile(near, 0.5);

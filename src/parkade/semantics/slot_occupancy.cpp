@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "parkade/semantics/marking_pieces.hpp"
 
@@ -15,6 +16,9 @@ using Eigen::Vector2d;
 // What cars leave between floor and body. Floor is seen through there, and the body's lower edge
 // appears this share of the camera's height farther away than it is.
 constexpr double kClearance = 0.2;  // m
+
+// Cameras' parts of the picture fade into each other over so much of the ground.
+constexpr double kFade = 2.5;  // m
 
 // The label at p and those behind it, as one camera sees them.
 class Ray {
@@ -72,7 +76,8 @@ class Ray {
 struct Evidence {
   double floor = 0.0;  // points
   double car = 0.0;
-  double blind = 0.0;  // m, mean
+  double either = 0.0;  // a car by the camera that shows most of the point, none by another
+  double blind = 0.0;   // m, mean
 };
 
 // A free slot shows floor nearly everywhere, a taken one a car over most of its middle: the share
@@ -86,60 +91,103 @@ double probability(const Evidence& e) {
   constexpr double kBlind = 1.5;      // m
   const double points = e.floor + e.car;
   if (points == 0.0) return 0.5;
-  const double share = std::clamp((e.floor / points - 0.5) / kSure, -1.0, 1.0);
+  const double floor = (e.floor + 0.5 * e.either) / (points + e.either);
+  const double share = std::clamp((floor - 0.5) / kSure, -1.0, 1.0);
   const double weight = std::min(1.0, points / kEnough) * std::min(1.0, kBlind / (e.blind + 1e-9));
   return 1.0 / (1.0 + std::exp(-kStrongest * weight * share));
 }
+
+class SlotGround {
+ public:
+  SlotGround(const LabelProbe& probe, const BevViews& views, const std::array<Vector2d, 4>& corners)
+      : probe_(probe),
+        views_(views),
+        corners_(corners),
+        front_(corners[1] - corners[0]),
+        side_(corners[3] - corners[0]),
+        area_(cross(front_, side_)) {}
+
+  [[nodiscard]] bool empty() const { return std::abs(area_) < 1e-3; }
+  // Bilinear coordinates: a across from left to right, b from the entrance to the rear.
+  [[nodiscard]] Vector2d at(double a, double b) const {
+    return (1.0 - b) * ((1.0 - a) * corners_[0] + a * corners_[1]) +
+           b * ((1.0 - a) * corners_[3] + a * corners_[2]);
+  }
+  // A wheel's foot is where it appears; a body's is nearer, and must not be the next slot's car.
+  [[nodiscard]] bool holds(const Ray& ray, double vehicle) const {
+    const double edge = ray.nearEdge(vehicle);
+    return inside(ray.at(edge), 0.1) && inside(ray.below(edge), 0.3);
+  }
+  // Whether a camera beside the one that shows most of p may have drawn what is seen there, and
+  // sees no car of this slot. In the fading of one camera into another a car's smear in the one is
+  // a ghost on the floor that the other sees.
+  [[nodiscard]] bool deniedByOther(const Vector2d& p) const {
+    const BevGeometry& geometry = probe_.labels().geometry;
+    const std::size_t own = views_.indexAt(geometry, p);
+    for (int k = 0; k < 16; ++k) {
+      const double turn = k * 0.25 * std::numbers::pi;
+      const Vector2d step = (k < 8 ? 0.4 : 1.0) * kFade * Vector2d(std::cos(turn), std::sin(turn));
+      const std::size_t other = views_.indexAt(geometry, p + step);
+      if (other == own || other >= views_.views.size()) continue;
+      const Ray ray(probe_, views_.views[other], p);
+      const Ray::Cover cover = ray.cover();
+      if (cover.semantic_class != SemanticClass::kVehicle ||
+          !inside(ray.at(ray.nearEdge(cover.range)), 0.1)) {
+        return true;
+      }
+    }
+    return false;
+  }
+  void add(const Vector2d& p, Evidence& evidence) const {
+    const Ray ray(probe_, views_.viewAt(probe_.labels().geometry, p), p);
+    const Ray::Cover cover = ray.cover();
+    evidence.blind += ray.blind();
+    if (cover.semantic_class == SemanticClass::kFloor) {
+      evidence.floor += 1.0;
+    } else if (cover.semantic_class == SemanticClass::kVehicle) {
+      if (holds(ray, cover.range)) {
+        (deniedByOther(p) ? evidence.either : evidence.car) += 1.0;
+      } else if (!hidesGround(probe_.at(p))) {
+        evidence.floor += 1.0;
+      }
+    }
+  }
+
+ private:
+  static double cross(const Vector2d& a, const Vector2d& b) {
+    return a.x() * b.y() - a.y() * b.x();
+  }
+  [[nodiscard]] bool inside(const Vector2d& p, double before) const {
+    const double a = cross(p - corners_[0], side_) / area_;
+    const double b = cross(front_, p - corners_[0]) / area_;
+    // Wheels may stand on the line; the next slot's car does not.
+    return a > -0.02 && a < 1.02 && b > -before && b < 1.0;
+  }
+
+  const LabelProbe& probe_;
+  const BevViews& views_;
+  const std::array<Vector2d, 4>& corners_;
+  Vector2d front_;
+  Vector2d side_;
+  double area_;
+};
 
 }  // namespace
 
 double probabilityFree(const LabelProbe& probe, const BevViews& views,
                        const std::array<Vector2d, 4>& corners) {
-  // Bilinear coordinates: a across from left to right, b from the entrance to the rear.
-  const auto at = [&](double a, double b) -> Vector2d {
-    return (1.0 - b) * ((1.0 - a) * corners[0] + a * corners[1]) +
-           b * ((1.0 - a) * corners[3] + a * corners[2]);
-  };
-  const Vector2d front = corners[1] - corners[0];
-  const Vector2d side = corners[3] - corners[0];
-  const double area = std::abs(front.x() * side.y() - front.y() * side.x());
-  const auto inside = [&](const Vector2d& p, double before) {
-    const Vector2d d = p - corners[0];
-    const double a =
-        (d.x() * side.y() - d.y() * side.x()) / (front.x() * side.y() - front.y() * side.x());
-    const double b =
-        (front.x() * d.y() - front.y() * d.x()) / (front.x() * side.y() - front.y() * side.x());
-    // Wheels may stand on the line; the next slot's car does not.
-    return a > -0.02 && a < 1.02 && b > -before && b < 1.0;
-  };
-  // A wheel's foot is where it appears; a body's is nearer, and must not be the next slot's car.
-  const auto standsHere = [&](const Ray& ray, double vehicle) {
-    const double edge = ray.nearEdge(vehicle);
-    return inside(ray.at(edge), 0.1) && inside(ray.below(edge), 0.3);
-  };
-  if (area < 1e-3) return 0.5;
+  const SlotGround slot(probe, views, corners);
+  if (slot.empty()) return 0.5;
   // Any car covers this middle part: it is narrower and shorter than cars, wherever they stand.
   constexpr int kAcross = 9;
   constexpr int kDeep = 15;
   Evidence evidence;
   for (int j = 0; j < kDeep; ++j) {
-    const double b = 0.25 + 0.5 * j / (kDeep - 1);
     for (int i = 0; i < kAcross; ++i) {
-      const Vector2d p = at(0.3 + 0.4 * i / (kAcross - 1), b);
-      const Ray ray(probe, views.viewAt(probe.labels().geometry, p), p);
-      const Ray::Cover cover = ray.cover();
-      evidence.blind += ray.blind() / (kAcross * kDeep);
-      if (cover.semantic_class == SemanticClass::kFloor) {
-        evidence.floor += 1.0;
-      } else if (cover.semantic_class == SemanticClass::kVehicle) {
-        if (standsHere(ray, cover.range)) {
-          evidence.car += 1.0;
-        } else if (!hidesGround(probe.at(p))) {
-          evidence.floor += 1.0;
-        }
-      }
+      slot.add(slot.at(0.3 + 0.4 * i / (kAcross - 1), 0.25 + 0.5 * j / (kDeep - 1)), evidence);
     }
   }
+  evidence.blind /= kAcross * kDeep;
   return probability(evidence);
 }
 
