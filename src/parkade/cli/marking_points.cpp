@@ -13,6 +13,7 @@
 
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
+#include "parkade/semantics/bev_scale.hpp"
 #include "parkade/semantics/draw_labels.hpp"
 #include "parkade/semantics/draw_slots.hpp"
 #include "parkade/semantics/line_extraction.hpp"
@@ -116,42 +117,17 @@ class Scorer {
 
   Status add(const Marked& marked) {
     const std::string path = joinPath(options_.folder, marked.name);
-    const Result<cv::Mat> image = readImage(path, false);
-    if (!image) return image.error();
-    BevImage bev;
-    bev.image = *image;
-    bev.geometry = {image->cols, image->rows, options_.width_m / image->cols, Vector2d::Zero()};
-    const Result<cv::Mat> grey = readImage(path, true);
+    const Result<BevImage> whole = read(path, false);
+    if (!whole) return whole.error();
+    const Result<BevImage> grey = read(path, true);
     if (!grey) return grey.error();
-    constexpr int kBlack = 8;  // the own car, with the traces of JPEG
-    bev.valid = *grey >= kBlack;
-    const Result<BevLabels> labels = network_.segment(bev);
-    if (!labels) return labels.error();
-    const Lines lines = extractLines(bev, *labels, kAttitudeSigma);
-    const BevViews views = BevViews::fromMiddle(bev.geometry);
-    const std::vector<SlotObservation> slots =
-        extractSlots(bev, *labels, lines.segments, views, {kAttitudeSigma, 0.01});
-    std::vector<Vector2d> corners;
-    for (const SlotObservation& slot : slots) {
-      for (std::size_t k = 0; k < 2; ++k) {
-        addDistinct(bev.geometry.toPixel(slot.corners[k]), options_.radius_px, corners);
-      }
-    }
-    std::vector<Vector2d> ends = corners;
-    for (const SlotMark& mark : findSlotMarks(*grey, LabelProbe(*labels), lines.segments)) {
-      addDistinct(bev.geometry.toPixel(mark.p), options_.radius_px, ends);
-    }
-    corners_.add(corners, marked.points, options_.radius_px);
-    ends_.add(ends, marked.points, options_.radius_px);
+    const Result<Found> found = find(*whole, *grey);
+    if (!found) return found.error();
+    corners_.add(found->corners, marked.points, options_.radius_px);
+    meetings_.add(found->meetings, marked.points, options_.radius_px);
+    all_.add(found->all, marked.points, options_.radius_px);
     ++pictures_;
-    if (!options_.pictures) return {};
-    std::vector<LineSegment> strokes;
-    addStrokes(marked.points, true, bev.geometry, strokes);
-    addStrokes(ends, false, bev.geometry, strokes);
-    const cv::Mat picture =
-        drawSlots(drawLabels(bev.image, labels->labels, 0.5), bev.geometry, slots, strokes);
-    return writeImage(joinPath(options_.out, "pictures/" + marked.name), picture,
-                      {.png = false, .jpeg_quality = 90});
+    return options_.pictures ? draw(*whole, marked, *found) : Status();
   }
 
   [[nodiscard]] Status finish() const {
@@ -160,10 +136,10 @@ class Scorer {
     points["pictures"] = pictures_;
     points["radius_px"] = options_.radius_px;
     fmt::print("Marking points within {:.0f} px, {} pictures\n", options_.radius_px, pictures_);
-    fmt::print("{:<24} {:>6} {:>6} {:>6} {:>8} {:>10}\n", "", "true", "told", "right", "recall",
+    fmt::print("{:<26} {:>6} {:>6} {:>6} {:>8} {:>10}\n", "", "true", "told", "right", "recall",
                "precision");
-    for (const Count* one : {&corners_, &ends_}) {
-      fmt::print("{:<24} {:>6} {:>6} {:>6} {:>8.3f} {:>10.3f}\n", one->name, one->truth, one->told,
+    for (const Count* one : {&corners_, &meetings_, &all_}) {
+      fmt::print("{:<26} {:>6} {:>6} {:>6} {:>8.3f} {:>10.3f}\n", one->name, one->truth, one->told,
                  one->right, one->recall(), one->precision());
       points[one->name] = {{"true", one->truth},
                            {"told", one->told},
@@ -175,11 +151,70 @@ class Scorer {
   }
 
  private:
+  struct Found {
+    std::vector<SlotObservation> slots;
+    std::vector<Vector2d> corners;   // px, of the slots' entrances
+    std::vector<Vector2d> meetings;  // px, of slot lines
+    std::vector<Vector2d> all;       // px, both and open ends
+  };
+
+  // A picture, in colour or grey.
+  [[nodiscard]] Result<BevImage> read(const std::string& path, bool grey) const {
+    const Result<cv::Mat> image = readImage(path, grey);
+    if (!image) return image.error();
+    const Result<cv::Mat> light = readImage(path, true);
+    if (!light) return light.error();
+    BevImage bev;
+    bev.image = *image;
+    bev.geometry = {image->cols, image->rows, options_.width_m / image->cols, Vector2d::Zero()};
+    constexpr int kBlack = 8;  // the own car, with the traces of JPEG
+    bev.valid = *light >= kBlack;
+    return bev;
+  }
+
+  Result<Found> find(const BevImage& whole, const BevImage& grey) {
+    // At the network's scale, at which a run draws features.
+    const double scale = network_.classMap().metres_per_px;
+    const BevImage bev = scale > 0.0 ? rescaled(whole, scale) : whole;
+    const Result<BevLabels> labels = network_.segment(bev);
+    if (!labels) return labels.error();
+    const Lines lines = extractLines(bev, *labels, kAttitudeSigma);
+    const BevViews views = BevViews::fromMiddle(bev.geometry);
+    const auto addTo = [&](std::vector<Vector2d>& points, const Vector2d& ground) {
+      addDistinct(whole.geometry.toPixel(ground), options_.radius_px, points);
+    };
+    Found found;
+    found.slots = extractSlots(bev, *labels, lines.segments, views, {kAttitudeSigma, 0.01});
+    for (const SlotObservation& slot : found.slots) {
+      for (std::size_t k = 0; k < 2; ++k) addTo(found.corners, slot.corners[k]);
+    }
+    found.all = found.corners;
+    const cv::Mat light = rescaled(grey, bev.geometry.metres_per_px).image;
+    for (const SlotMark& mark : findSlotMarks(light, LabelProbe(*labels), lines.segments)) {
+      if (!mark.across.isZero()) addTo(found.meetings, mark.p);
+      addTo(found.all, mark.p);
+    }
+    return found;
+  }
+
+  Status draw(const BevImage& whole, const Marked& marked, const Found& found) {
+    const Result<BevLabels> labels = network_.segment(whole);
+    if (!labels) return labels.error();
+    std::vector<LineSegment> strokes;
+    addStrokes(marked.points, true, whole.geometry, strokes);
+    addStrokes(found.meetings, false, whole.geometry, strokes);
+    const cv::Mat picture = drawSlots(drawLabels(whole.image, labels->labels, 0.5), whole.geometry,
+                                      found.slots, strokes);
+    return writeImage(joinPath(options_.out, "pictures/" + marked.name), picture,
+                      {.png = false, .jpeg_quality = 90});
+  }
+
   const MarkingPointOptions& options_;
   SegmentationNetwork network_;
   int pictures_ = 0;
   Count corners_{"corners of slots"};
-  Count ends_{"and other ends of lines"};
+  Count meetings_{"where lines meet"};
+  Count all_{"corners and ends of lines"};
 };
 
 }  // namespace

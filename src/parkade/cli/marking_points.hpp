@@ -17,10 +17,11 @@ struct MarkingPointOptions {
   double radius_px = 10.0;  ///< a point found nearer than this to a true one is right
 };
 
-/// Scores the corners of slots on bird's-eye pictures that others stitched and marked, as PS2.0:
-/// annotations.txt has a line per picture, NAME x0,y0,x1,y1,class ..., where the middle of a box of
-/// class 0 is a marking point; other classes are left out. Prints the table and writes
-/// metrics.json. Fails with the file and line that cannot be read.
+/// Scores the corners of slots, and the places where slot lines meet in a T or an L, on bird's-eye
+/// pictures that others stitched and marked, as PS2.0: annotations.txt has a line per picture, NAME
+/// x0,y0,x1,y1,class ..., where the middle of a box of class 0 is a marking point; other classes
+/// are left out. Pictures are brought to the network's metres per pixel first. Prints the table and
+/// writes metrics.json. Fails with the file and line that cannot be read.
 Status scoreMarkingPoints(const MarkingPointOptions& options);
 
 }  // namespace parkade::cli

@@ -2,12 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/semantics/paint_strokes.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "parkade/core/median.hpp"
 #include "parkade/semantics/marking_pieces.hpp"
 #include "parkade/types/semantic_class.hpp"
+#include "parkade/types/semantic_features.hpp"
 
 namespace parkade {
 namespace {
@@ -93,7 +98,90 @@ class Pieces {
   std::vector<std::uint8_t> labels_;
 };
 
+// Pixels in a row through (v, u) that are marked, in a direction and against it, as a length in px.
+double runThrough(const cv::Mat& marked, int v, int u, int dv, int du) {
+  int count = 1;
+  for (const int sign : {-1, 1}) {
+    int y = v + sign * dv;
+    int x = u + sign * du;
+    while (y >= 0 && x >= 0 && y < marked.rows && x < marked.cols &&
+           marked.at<std::uint8_t>(y, x) != 0) {
+      ++count;
+      y += sign * dv;
+      x += sign * du;
+    }
+  }
+  return dv != 0 && du != 0 ? count * M_SQRT2 : count;
+}
+
+// The least of the runs through a pixel: how thick the paint is there.
+double thicknessAt(const cv::Mat& marked, int v, int u) {
+  return std::min({runThrough(marked, v, u, 0, 1), runThrough(marked, v, u, 1, 0),
+                   runThrough(marked, v, u, 1, 1), runThrough(marked, v, u, 1, -1)});
+}
+
+// Strokes of one width everywhere, but where they meet; an arrow's head is thicker than its shaft.
+bool isPlainStroke(const cv::Mat& marked, const std::vector<cv::Point>& pixels, double pixel) {
+  constexpr double kWidest = 0.26;   // m
+  constexpr double kThicker = 1.6;   // times the usual
+  constexpr double kMeeting = 0.12;  // share of the paint
+  std::vector<double> thickness;
+  for (const cv::Point& p : pixels) thickness.push_back(thicknessAt(marked, p.y, p.x));
+  constexpr double kLeast = 3.0;  // px: thinner strokes' widths waver
+  const double usual = std::max(kLeast, median(thickness));
+  if (usual * pixel > kWidest) return false;
+  const auto thick = std::count_if(thickness.begin(), thickness.end(),
+                                   [usual](double t) { return t > kThicker * usual; });
+  return static_cast<double>(thick) <= kMeeting * static_cast<double>(thickness.size());
+}
+
 }  // namespace
+
+void tellStrokesFromArrows(const cv::Mat& slot_line, double metres_per_px, cv::Mat& labels) {
+  constexpr auto kArrow = static_cast<int>(SemanticClass::kArrow);
+  constexpr auto kSlot = static_cast<int>(SemanticClass::kSlotLine);
+  constexpr int kLeast = 20;          // px of arrow
+  constexpr double kDoubtful = 4.5;   // log-odds, on average
+  constexpr double kShare = 0.1;      // of slot line in what hangs together
+  constexpr double kGap = 0.16;       // m of floor within what hangs together
+  constexpr double kBothWays = 0.45;  // m that a T or L measures at least
+  const cv::Mat arrow = labels == kArrow;
+  if (slot_line.empty() || cv::countNonZero(arrow) < kLeast) return;
+  const cv::Mat marked = arrow | (labels == kSlot);
+  const int reach = std::max(1, static_cast<int>(std::lround(0.5 * kGap / metres_per_px)));
+  cv::Mat near;
+  cv::dilate(marked, near, cv::Mat::ones(2 * reach + 1, 2 * reach + 1, CV_8UC1));
+  cv::Mat piece_of;
+  const int count = cv::connectedComponents(near, piece_of, 8, CV_32S);
+  std::vector<std::vector<cv::Point>> pieces(static_cast<std::size_t>(count));
+  std::vector<int> arrows(pieces.size(), 0);
+  std::vector<int> slots(pieces.size(), 0);
+  std::vector<double> below(pieces.size(), 0.0);  // how far slot line lies below arrow, summed
+  for (int v = 0; v < labels.rows; ++v) {
+    for (int u = 0; u < labels.cols; ++u) {
+      const auto i = static_cast<std::size_t>(piece_of.at<int>(v, u));
+      if (marked.at<std::uint8_t>(v, u) == 0) continue;
+      pieces[i].emplace_back(u, v);
+      if (labels.at<std::uint8_t>(v, u) == kSlot) {
+        ++slots[i];
+        continue;
+      }
+      ++arrows[i];
+      below[i] += (255.0 - slot_line.at<std::uint8_t>(v, u)) / kSlotLinePerLogOdds;
+    }
+  }
+  for (std::size_t i = 1; i < pieces.size(); ++i) {
+    if (arrows[i] < kLeast || below[i] > kDoubtful * arrows[i]) continue;
+    const cv::Size2f box = cv::minAreaRect(pieces[i]).size;
+    const bool both_ways = std::min(box.width, box.height) * metres_per_px >= kBothWays;
+    const bool meets = slots[i] >= kShare * static_cast<double>(pieces[i].size());
+    if ((!both_ways && !meets) || !isPlainStroke(marked, pieces[i], metres_per_px)) continue;
+    for (const cv::Point& p : pieces[i]) {
+      std::uint8_t& label = labels.at<std::uint8_t>(p);
+      if (label == kArrow) label = kSlot;
+    }
+  }
+}
 
 void uniteStrokes(cv::Mat& labels, double metres_per_px) {
   constexpr double kLargest = 0.1;  // m^2 of a piece that may be mistaken

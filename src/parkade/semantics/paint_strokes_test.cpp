@@ -8,6 +8,7 @@
 #include <opencv2/core.hpp>
 
 #include "parkade/types/semantic_class.hpp"
+#include "parkade/types/semantic_features.hpp"
 
 namespace parkade {
 namespace {
@@ -45,6 +46,42 @@ TEST(PaintStrokes, OtherThingsStayWhatTheyAre) {
   paint(labels, {50, 60, 10, 4}, SemanticClass::kWheelStop);   // stands on the floor
   const cv::Mat before = labels.clone();
   uniteStrokes(labels, kScale);
+  EXPECT_EQ(cv::countNonZero(labels != before), 0);
+}
+
+// A T of two strokes, and an arrow with a head, all labelled arrow; doubt: log-odds by which slot
+// line is the less likely.
+cv::Mat strokesAndArrow(double doubt, cv::Mat& slot_line) {
+  cv::Mat labels = floorOf(128);
+  paint(labels, {20, 20, 4, 60}, SemanticClass::kArrow);
+  paint(labels, {24, 48, 30, 4}, SemanticClass::kArrow);
+  paint(labels, {90, 40, 4, 50}, SemanticClass::kArrow);
+  for (int v = 0; v < 24; ++v) {
+    const int half = 1 + v / 2;
+    paint(labels, {92 - half, 18 + v, 2 * half, 1}, SemanticClass::kArrow);
+  }
+  paint(labels, {94, 80, 20, 3}, SemanticClass::kSlotLine);
+  slot_line = cv::Mat(labels.size(), CV_8UC1, cv::Scalar(255.0 - kSlotLinePerLogOdds * doubt));
+  return labels;
+}
+
+TEST(PaintStrokes, AHeadlessArrowIsSlotLines) {
+  cv::Mat slot_line;
+  cv::Mat labels = strokesAndArrow(3.0, slot_line);
+  tellStrokesFromArrows(slot_line, kScale, labels);
+  EXPECT_EQ(at(labels, 30, 21), SemanticClass::kSlotLine);
+  EXPECT_EQ(at(labels, 49, 40), SemanticClass::kSlotLine);
+  EXPECT_EQ(at(labels, 60, 91), SemanticClass::kArrow);  // has a head
+  EXPECT_EQ(at(labels, 38, 88), SemanticClass::kArrow);
+}
+
+TEST(PaintStrokes, WhatTheNetworkIsSureOfStaysAnArrow) {
+  cv::Mat slot_line;
+  const cv::Mat before = strokesAndArrow(6.0, slot_line);
+  cv::Mat labels = before.clone();
+  tellStrokesFromArrows(slot_line, kScale, labels);
+  EXPECT_EQ(cv::countNonZero(labels != before), 0);
+  tellStrokesFromArrows(cv::Mat(), kScale, labels);  // a network without slot lines
   EXPECT_EQ(cv::countNonZero(labels != before), 0);
 }
 

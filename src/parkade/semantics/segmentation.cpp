@@ -162,6 +162,7 @@ Result<BevLabels> SegmentationNetwork::segment(const BevImage& bev) {
       cv::resize(slot_line(used), slot_line, bev.image.size(), 0, 0, cv::INTER_NEAREST);
     }
   }
+  tellStrokesFromArrows(slot_line, bev.geometry.metres_per_px, result.labels);
   uniteStrokes(result.labels, bev.geometry.metres_per_px);
   const cv::Mat unseen = bev.valid == 0;
   result.labels.setTo(static_cast<int>(SemanticClass::kUnknown), unseen);

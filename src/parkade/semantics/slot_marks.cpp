@@ -11,11 +11,12 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kMeet = 0.35;      // m: lines that end this near to each other meet
-constexpr double kLeastMet = 0.25;  // m of side line to see, where another line meets it
-constexpr double kLeastOpen = 0.5;  // the same without
-constexpr double kSteepest = 0.5;   // sine of the least angle between lines that meet
-constexpr double kBeyond = 0.9;     // m in front of an entrance without its side going on
+constexpr double kMeet = 0.35;        // m: lines that end this near to each other meet
+constexpr double kMeetInPaint = 0.6;  // m: the same where labels say that their paint goes on
+constexpr double kLeastMet = 0.25;    // m of side line to see, where another line meets it
+constexpr double kLeastOpen = 0.5;    // the same without
+constexpr double kSteepest = 0.5;     // sine of the least angle between lines that meet
+constexpr double kBeyond = 0.9;       // m in front of an entrance without its side going on
 
 struct Stroke {
   Vector2d begin;
@@ -149,7 +150,10 @@ class MarkFinder {
     const Vector2d between = other.begin - side.begin;
     const double s = (between.x() * other.along.y() - between.y() * other.along.x()) / sine;
     const double t = (between.x() * side.along.y() - between.y() * side.along.x()) / sine;
-    if (s < -kMeet || s > side.length + kMeet || t < -kMeet || t > other.length + kMeet) return;
+    if (s < -kMeetInPaint || s > side.length + kMeetInPaint || t < -kMeetInPaint ||
+        t > other.length + kMeetInPaint) {
+      return;
+    }
     SlotMark mark;
     mark.p = side.begin + s * side.along;
     // Lines that only come near to each other have floor between them.
@@ -175,8 +179,10 @@ class MarkFinder {
   // Whether the paint of a line goes on to p, which lies s m along it.
   [[nodiscard]] bool reaches(const Stroke& stroke, double s, const Vector2d& p) const {
     const double inside = std::clamp(s, 0.0, stroke.length);
-    if (std::abs(s - inside) < 0.1) return true;
-    return probe_.along(stroke.begin + inside * stroke.along, p, 0.04).floor < 0.5;
+    const double gap = std::abs(s - inside);
+    if (gap < 0.1) return true;
+    const LabelProbe::Shares between = probe_.along(stroke.begin + inside * stroke.along, p, 0.04);
+    return gap <= kMeet ? between.floor < 0.5 : between.paint > 0.8;
   }
 
   void openEnd(std::size_t i, double sign) {
