@@ -103,7 +103,7 @@ void extractObjects(benchmark::State& state) {
   TimeNs t_ns = 0;
   std::size_t found = 0;
   for (auto _ : state) {
-    const FoundObjects objects = extractor.extract(labels, 0.003);
+    const FoundObjects objects = extractor.extract(labels, {}, 0.003);
     benchmark::DoNotOptimize(tracker.update(objects.agents, SE2(), t_ns));
     found = objects.objects.size() + objects.agents.size();
     t_ns += kNsPerSecond / 10;

@@ -78,12 +78,12 @@ class BevWriter {
       if (!labels) return labels.error();
       picture = drawLabels(bev.image, labels->labels, kShare);
       if (objects_) {
-        const FoundObjects found = objects_->extract(*labels, kAttitudeSigma);
-        picture = drawObjects(picture, bev.geometry, found.objects, untracked(found.agents),
-                              bev.geometry.width_px < kSmall ? 2.0 : 1.0);
         const Lines lines = extractLines(bev, *labels, kAttitudeSigma);
         const std::vector<SlotObservation> slots =
             extractSlots(bev, *labels, lines.segments, views_, {kAttitudeSigma, kHeightSigma});
+        const FoundObjects found = objects_->extract(*labels, slots, kAttitudeSigma);
+        picture = drawObjects(picture, bev.geometry, found.objects, untracked(found.agents),
+                              bev.geometry.width_px < kSmall ? 2.0 : 1.0);
         picture = drawSlots(picture, bev.geometry, slots, lines.segments);
       }
     }

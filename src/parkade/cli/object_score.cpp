@@ -21,8 +21,10 @@
 #include "parkade/pipeline/stitched_views.hpp"
 #include "parkade/semantics/draw_labels.hpp"
 #include "parkade/semantics/draw_objects.hpp"
+#include "parkade/semantics/line_extraction.hpp"
 #include "parkade/semantics/object_extraction.hpp"
 #include "parkade/semantics/segmentation.hpp"
+#include "parkade/semantics/slot_extraction.hpp"
 
 namespace parkade::cli {
 namespace {
@@ -111,7 +113,11 @@ class ObjectScore : public SampleScore {
       labels.labels = sample.bev_labels;
       labels.confidence = cv::Mat(sample.bev_labels.size(), CV_8UC1, cv::Scalar(255));
     }
-    const FoundObjects found = extractor_->extract(labels, options_.attitude_sigma);
+    const Lines lines = extractLines(sample.bev, labels, options_.attitude_sigma);
+    const std::vector<SlotObservation> slots =
+        extractSlots(sample.bev, labels, lines.segments, views_,
+                     {options_.attitude_sigma, options_.height_sigma});
+    const FoundObjects found = extractor_->extract(labels, slots, options_.attitude_sigma);
     std::vector<Told> told;
     for (const ObjectObservation& o : found.objects) {
       told.push_back({o.semantic_class, o.position.head<2>(), o.covariance.topLeftCorner<2, 2>(),

@@ -41,6 +41,7 @@ struct ObjectScoreOptions {
   bool true_labels = false;        ///< features from the true labels instead of the network's
   std::string pictures;            ///< folder for pictures with found and true objects; empty: none
   double attitude_sigma = 0.0035;  ///< rad, of the attitude that pictures are stitched with
+  double height_sigma = 0.005;     ///< m, the same
 };
 
 /// Precision, recall and errors of objects on the floor, pillars, vehicles and people.

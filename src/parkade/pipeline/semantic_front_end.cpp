@@ -155,7 +155,7 @@ Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames) {
   const Lines lines = extractLines(bev, frame.labels, frame.attitude_sigma, m.options.slot_lines);
   frame.slots = extractSlots(bev, frame.labels, lines.segments, m.bev_views,
                              {frame.attitude_sigma, view.floor.sigma_height}, m.options.slots);
-  FoundObjects found = m.objects->extract(frame.labels, frame.attitude_sigma);
+  FoundObjects found = m.objects->extract(frame.labels, frame.slots, frame.attitude_sigma);
   frame.objects = std::move(found.objects);
   frame.moving = m.tracker.update(found.agents, SE2::fromSE3(view.now.T_odom_vehicle), frames.t_ns);
   frame.smear = m.smear->find(frame.labels);

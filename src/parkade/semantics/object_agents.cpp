@@ -7,121 +7,13 @@
 #include <utility>
 
 #include "parkade/geometry/planar.hpp"
+#include "parkade/semantics/car_parting.hpp"
 #include "parkade/semantics/marking_objects.hpp"
 
 namespace parkade {
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
-
-// Points in the order in which a viewer sweeps over them, with the nearest one of each direction.
-Points sweep(const Points& points, const Eigen::Vector2d& viewer) {
-  constexpr double kBin = M_PI / 360.0;
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const Eigen::Vector2d& p : points) mean += (p - viewer) / static_cast<double>(points.size());
-  const double middle = std::atan2(mean.y(), mean.x());
-  std::vector<std::pair<int, std::size_t>> order;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector2d d = points[i] - viewer;
-    const double turn = std::remainder(std::atan2(d.y(), d.x()) - middle, 2.0 * M_PI);
-    order.emplace_back(static_cast<int>(std::floor(turn / kBin)), i);
-  }
-  std::sort(order.begin(), order.end(), [&](const auto& a, const auto& b) {
-    if (a.first != b.first) return a.first < b.first;
-    const double ra = (points[a.second] - viewer).squaredNorm();
-    const double rb = (points[b.second] - viewer).squaredNorm();
-    return ra != rb ? ra < rb : a.second < b.second;
-  });
-  Points out;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    if (k > 0 && order[k].first == order[k - 1].first) continue;
-    out.push_back(points[order[k].second]);
-  }
-  return out;
-}
-
-// Indices of the points on the hull's side that faces the viewer, in sweeping order.
-std::vector<std::size_t> nearHull(const Points& swept) {
-  std::vector<std::size_t> hull;
-  for (std::size_t i = 0; i < swept.size(); ++i) {
-    while (hull.size() >= 2) {
-      const Eigen::Vector2d& a = swept[hull[hull.size() - 2]];
-      const Eigen::Vector2d& b = swept[hull.back()];
-      // Sweeping to the left, the near side turns to the right.
-      if (cross(b - a, swept[i] - b) < 0.0) break;
-      hull.pop_back();
-    }
-    hull.push_back(i);
-  }
-  return hull;
-}
-
-double extent(const Points& points, std::size_t begin, std::size_t end) {
-  double reach = 0.0;
-  for (std::size_t i = begin; i < end; ++i)
-    reach = std::max(reach, (points[i] - points[begin]).norm());
-  return reach;
-}
-
-// Where swept points part into two cars: after this index; 0 where they do not.
-std::size_t findNotch(const Points& swept, double least_depth) {
-  constexpr double kWidest = 1.1;    // m: gaps between cars; between a car's wheels it is wider
-  constexpr double kCarWidth = 1.0;  // m: of a car's front at least so much is seen
-  const std::vector<std::size_t> hull = nearHull(swept);
-  std::size_t best = 0;
-  double deepest = least_depth;
-  for (std::size_t k = 0; k + 1 < hull.size(); ++k) {
-    const Eigen::Vector2d& a = swept[hull[k]];
-    const Eigen::Vector2d chord = swept[hull[k + 1]] - a;
-    const double length = chord.norm();
-    if (length < 0.2) continue;
-    const auto depthOf = [&](std::size_t i) { return cross(swept[i] - a, chord) / length; };
-    std::size_t at = 0;
-    double depth = 0.0;
-    for (std::size_t i = hull[k] + 1; i < hull[k + 1]; ++i) {
-      const double d = std::abs(depthOf(i));
-      if (d > depth) {
-        depth = d;
-        at = i;
-      }
-    }
-    if (depth <= deepest) continue;
-    // Its width half way down, along the chord.
-    std::size_t left = at;
-    std::size_t right = at;
-    while (left > hull[k] && std::abs(depthOf(left)) > 0.5 * depth) --left;
-    while (right < hull[k + 1] && std::abs(depthOf(right)) > 0.5 * depth) ++right;
-    const double width = std::abs(chord.dot(swept[right] - swept[left])) / length;
-    if (width > kWidest) continue;
-    if (extent(swept, 0, at) < kCarWidth || extent(swept, at, swept.size()) < kCarWidth) continue;
-    deepest = depth;
-    best = at;
-  }
-  return best;
-}
-
-// After which point something else is in between, seen from the viewer; 0 where nothing is.
-std::size_t findGap(const Points& swept, const Eigen::Vector2d& viewer) {
-  constexpr double kGap = 0.5;  // m
-  for (std::size_t i = 1; i < swept.size(); ++i) {
-    const Eigen::Vector2d ray = (swept[i - 1] - viewer).normalized();
-    if (std::abs(cross(ray, swept[i] - swept[i - 1])) > kGap) return i;
-  }
-  return 0;
-}
-
-void splitCars(Points swept, const Eigen::Vector2d& viewer, double least_depth,
-               std::vector<Points>& out) {
-  std::size_t at = findGap(swept, viewer);
-  if (at == 0) at = findNotch(swept, least_depth);
-  if (at == 0) {
-    out.push_back(std::move(swept));
-    return;
-  }
-  const auto middle = swept.begin() + static_cast<std::ptrdiff_t>(at);
-  splitCars(Points(swept.begin(), middle), viewer, least_depth, out);
-  splitCars(Points(middle, swept.end()), viewer, least_depth, out);
-}
 
 // Range at a step to the side of a swept point; 0 where the sweep ends before.
 double rangeBeside(const Points& swept, const std::vector<double>& ranges,
@@ -199,17 +91,20 @@ AgentDetection vehicleOf(const Points& swept, const ContactEdge& edge, const Bev
   return agent;
 }
 
-void findVehicles(const ContactFinder& finder, const BevLabels& labels, const BevViews& views,
+void findVehicles(const ContactFinder& finder, const BevLabels& labels,
+                  const std::vector<SlotObservation>& slots, const BevViews& views,
                   double attitude_sigma, const AgentOptions& options,
                   std::vector<AgentDetection>& out) {
   constexpr double kLeastEdge = 0.25;  // m
   const Eigen::Vector2d& middle = labels.geometry.center;
   for (const ContactEdge& edge : finder.find(labels, SemanticClass::kVehicle, 0.0,
                                              options.min_confidence, options.min_pixels)) {
-    std::vector<Points> cars;
-    splitCars(sweep(edge.points, middle), middle, options.notch_m, cars);
-    for (const Points& swept : cars) {
-      if (extent(swept, 0, swept.size()) < kLeastEdge) continue;
+    const auto floor = [&](const Points& swept) {
+      return onFloor(swept, views, labels.geometry, options.body_clearance_m);
+    };
+    for (const Points& swept :
+         partCars(sweepOver(edge.points, middle), middle, options.notch_m, slots, floor)) {
+      if (reachOf(swept, 0, swept.size()) < kLeastEdge) continue;
       out.push_back(vehicleOf(swept, edge, labels, views, attitude_sigma, options));
     }
   }
@@ -281,10 +176,11 @@ void dropEchoes(const BevViews& views, const BevGeometry& geometry,
 }  // namespace
 
 std::vector<AgentDetection> findAgents(const ContactFinder& finder, const BevLabels& labels,
+                                       const std::vector<SlotObservation>& slots,
                                        const BevViews& views, double attitude_sigma,
                                        const AgentOptions& options) {
   std::vector<AgentDetection> agents;
-  findVehicles(finder, labels, views, attitude_sigma, options, agents);
+  findVehicles(finder, labels, slots, views, attitude_sigma, options, agents);
   findPeople(finder, labels, views, attitude_sigma, options, agents);
   dropEchoes(views, labels.geometry, agents);
   return agents;

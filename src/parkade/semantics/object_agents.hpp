@@ -42,8 +42,10 @@ struct AgentDetection {
 
 /// Vehicles and people from where they meet the floor. A car body's lower edge is not on the floor
 /// but over it and so looks farther away than it is; all of a car but its wheels is brought nearer
-/// by that. Cars side by side are told apart by the gap between them.
+/// by that. Cars side by side are told apart by the gap between them, or by the slots (of the same
+/// picture; may be empty) that they stand in.
 std::vector<AgentDetection> findAgents(const ContactFinder& finder, const BevLabels& labels,
+                                       const std::vector<SlotObservation>& slots,
                                        const BevViews& views, double attitude_sigma,
                                        const AgentOptions& options);
 

@@ -39,7 +39,8 @@ Eigen::Vector2d GroundBox::nearestTo(const Eigen::Vector2d& p) const {
   return center + R * d.cwiseMin(0.5 * size).cwiseMax(-0.5 * size);
 }
 
-GroundBox fitFaces(const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& viewer) {
+GroundBox fitFaces(const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& viewer,
+                   double* off) {
   PARKADE_CHECK(!points.empty(), "no points");
   constexpr int kHeadings = 45;
   constexpr double kFar = 0.2;  // m: points inside, as of a wheel house, say nothing of a face
@@ -71,6 +72,7 @@ GroundBox fitFaces(const std::vector<Eigen::Vector2d>& points, const Eigen::Vect
     box.size = high - low;
     best = box;
   }
+  if (off != nullptr) *off = least / static_cast<double>((points.size() + stride - 1) / stride);
   return best;
 }
 

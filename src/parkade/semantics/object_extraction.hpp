@@ -37,16 +37,18 @@ class ObjectExtractor {
                   const ObjectOptions& options = {})
       : options_(options), views_(views), finder_(geometry, views), markings_(options.markings) {}
 
-  /// attitude_sigma (rad): of the pitch and roll that the picture was levelled with. The labels
-  /// must have the geometry's size (checked).
-  [[nodiscard]] FoundObjects extract(const BevLabels& labels, double attitude_sigma) const {
+  /// slots: of the same picture. attitude_sigma (rad): of the pitch and roll that the picture was
+  /// levelled with. The labels must have the geometry's size (checked).
+  [[nodiscard]] FoundObjects extract(const BevLabels& labels,
+                                     const std::vector<SlotObservation>& slots,
+                                     double attitude_sigma) const {
     FoundObjects found;
     found.objects = markings_.extract(labels, views_, attitude_sigma);
     for (ObjectObservation& pillar :
          findPillars(finder_, labels, views_, attitude_sigma, options_.pillars)) {
       found.objects.push_back(std::move(pillar));
     }
-    found.agents = findAgents(finder_, labels, views_, attitude_sigma, options_.agents);
+    found.agents = findAgents(finder_, labels, slots, views_, attitude_sigma, options_.agents);
     return found;
   }
 

@@ -51,10 +51,11 @@ class Scene {
     }
   }
   [[nodiscard]] FoundObjects extract() const {
-    return ObjectExtractor(labels.geometry, views).extract(labels, 0.003);
+    return ObjectExtractor(labels.geometry, views).extract(labels, slots, 0.003);
   }
   BevLabels labels;
   BevViews views;
+  std::vector<SlotObservation> slots;
 };
 
 GroundBox box(double x, double y, double heading, double length, double width) {
@@ -118,6 +119,27 @@ TEST(ObjectExtraction, CarsSideBySideAreTwo) {
     const Eigen::Vector2d nearest = car.nearestTo(scene.labels.geometry.center);
     EXPECT_LT((agent.contact - nearest).norm(), 0.35) << agent.contact.transpose();
     EXPECT_GT(agent.covariance.determinant(), 0.0);
+  }
+}
+
+// From far along their row the gap between two cars is hidden.
+TEST(ObjectExtraction, CarsInSlotsAreTwoWhereNoGapIsSeen) {
+  Scene scene(0.9);
+  const GroundBox near = box(-1.7, 4.6, M_PI_2, 4.0, 1.9);
+  const GroundBox far = box(-3.9, 4.6, M_PI_2, 4.0, 1.9);
+  for (const GroundBox& car : {near, far}) scene.stand(SemanticClass::kVehicle, car, 0.2, 1.5);
+  EXPECT_EQ(scene.extract().agents.size(), 1U);
+  for (const double x : {-2.8, -5.0}) {
+    SlotObservation slot;
+    slot.corners = {Eigen::Vector2d(x, 2.4), Eigen::Vector2d(x + 2.2, 2.4),
+                    Eigen::Vector2d(x + 2.2, 7.0), Eigen::Vector2d(x, 7.0)};
+    scene.slots.push_back(slot);
+  }
+  const FoundObjects found = scene.extract();
+  ASSERT_EQ(found.agents.size(), 2U);
+  for (const AgentDetection& agent : found.agents) {
+    const GroundBox& car = agent.contact.x() > -2.8 ? near : far;
+    EXPECT_LT((agent.contact - car.nearestTo(agent.contact)).norm(), 0.4);
   }
 }
 

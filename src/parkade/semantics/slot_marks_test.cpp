@@ -29,7 +29,8 @@ std::vector<LineSegment> cornerless() {
 
 int meetings(const PaintedFloor& floor) {
   int count = 0;
-  for (const SlotMark& mark : findSlotMarks(floor.bev.image, LabelProbe(floor.labels), cornerless())) {
+  for (const SlotMark& mark :
+       findSlotMarks(floor.bev.image, LabelProbe(floor.labels), cornerless())) {
     if (mark.across.isZero()) continue;
     EXPECT_LT((mark.p - Vector2d(2.0, -3.0)).norm(), 0.02);  // half a pixel
     ++count;
