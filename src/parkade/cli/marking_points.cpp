@@ -117,17 +117,24 @@ class Scorer {
 
   Status add(const Marked& marked) {
     const std::string path = joinPath(options_.folder, marked.name);
-    const Result<BevImage> whole = read(path, false);
-    if (!whole) return whole.error();
-    const Result<BevImage> grey = read(path, true);
-    if (!grey) return grey.error();
-    const Result<Found> found = find(*whole, *grey);
+    const Result<cv::Mat> image = readImage(path, false);
+    if (!image) return image.error();
+    const Result<cv::Mat> light = readImage(path, true);
+    if (!light) return light.error();
+    BevImage whole;
+    whole.image = *image;
+    whole.geometry = {image->cols, image->rows, options_.width_m / image->cols, Vector2d::Zero()};
+    constexpr int kBlack = 8;  // the own car, with the traces of JPEG
+    whole.valid = *light >= kBlack;
+    BevImage grey = whole;
+    grey.image = *light;
+    const Result<Found> found = find(whole, grey);
     if (!found) return found.error();
     corners_.add(found->corners, marked.points, options_.radius_px);
     meetings_.add(found->meetings, marked.points, options_.radius_px);
     all_.add(found->all, marked.points, options_.radius_px);
     ++pictures_;
-    return options_.pictures ? draw(*whole, marked, *found) : Status();
+    return options_.pictures ? draw(whole, marked, *found) : Status();
   }
 
   [[nodiscard]] Status finish() const {
@@ -157,20 +164,6 @@ class Scorer {
     std::vector<Vector2d> meetings;  // px, of slot lines
     std::vector<Vector2d> all;       // px, both and open ends
   };
-
-  // A picture, in colour or grey.
-  [[nodiscard]] Result<BevImage> read(const std::string& path, bool grey) const {
-    const Result<cv::Mat> image = readImage(path, grey);
-    if (!image) return image.error();
-    const Result<cv::Mat> light = readImage(path, true);
-    if (!light) return light.error();
-    BevImage bev;
-    bev.image = *image;
-    bev.geometry = {image->cols, image->rows, options_.width_m / image->cols, Vector2d::Zero()};
-    constexpr int kBlack = 8;  // the own car, with the traces of JPEG
-    bev.valid = *light >= kBlack;
-    return bev;
-  }
 
   Result<Found> find(const BevImage& whole, const BevImage& grey) {
     // At the network's scale, at which a run draws features.

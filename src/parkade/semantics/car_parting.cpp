@@ -112,17 +112,17 @@ std::size_t findSizeLimit(const Points& floor, const Eigen::Vector2d& viewer) {
 
 void part(Points swept, const Eigen::Vector2d& viewer, double least_depth,
           const std::vector<SlotObservation>& slots,
-          const std::function<Points(const Points&)>& on_floor, std::vector<Points>& out) {
+          const std::function<Points(const Points&)>& on_floor, std::vector<CarEdge>& out) {
   std::size_t at = findGap(swept, viewer);
   if (at == 0) at = findNotch(swept, least_depth);
   if (at == 0) {
-    const Points floor = on_floor(swept);
+    Points floor = on_floor(swept);
     at = findSlotChange(floor, slots);
     if (at == 0) at = findSizeLimit(floor, viewer);
-  }
-  if (at == 0) {
-    out.push_back(std::move(swept));
-    return;
+    if (at == 0) {
+      out.push_back({std::move(swept), std::move(floor)});
+      return;
+    }
   }
   const auto middle = swept.begin() + static_cast<std::ptrdiff_t>(at);
   part(Points(swept.begin(), middle), viewer, least_depth, slots, on_floor, out);
@@ -163,10 +163,10 @@ double reachOf(const Points& points, std::size_t begin, std::size_t end) {
   return reach;
 }
 
-std::vector<Points> partCars(Points swept, const Eigen::Vector2d& viewer, double least_depth,
-                             const std::vector<SlotObservation>& slots,
-                             const std::function<Points(const Points&)>& on_floor) {
-  std::vector<Points> cars;
+std::vector<CarEdge> partCars(Points swept, const Eigen::Vector2d& viewer, double least_depth,
+                              const std::vector<SlotObservation>& slots,
+                              const std::function<Points(const Points&)>& on_floor) {
+  std::vector<CarEdge> cars;
   part(std::move(swept), viewer, least_depth, slots, on_floor, cars);
   return cars;
 }

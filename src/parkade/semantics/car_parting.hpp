@@ -18,11 +18,17 @@ std::vector<Eigen::Vector2d> sweepOver(const std::vector<Eigen::Vector2d>& point
 /// How far the points from begin to before end lie from the first of them, m.
 double reachOf(const std::vector<Eigen::Vector2d>& points, std::size_t begin, std::size_t end);
 
+/// One car's part of an edge.
+struct CarEdge {
+  std::vector<Eigen::Vector2d> swept;  ///< as the picture shows it
+  std::vector<Eigen::Vector2d> floor;  ///< where its points stand
+};
+
 /// Parts the edge that cars' smears have at the floor, its points swept over by the viewer, into
 /// one per car: where something else is in between, at a notch (least_depth, m) as the gap between
 /// two cars makes it, where it passes from slot to slot (agent_slots.hpp), and where it is larger
 /// than cars are, at the place after which two cars fit best. on_floor: where such points stand.
-std::vector<std::vector<Eigen::Vector2d>> partCars(
+std::vector<CarEdge> partCars(
     std::vector<Eigen::Vector2d> swept, const Eigen::Vector2d& viewer, double least_depth,
     const std::vector<SlotObservation>& slots,
     const std::function<std::vector<Eigen::Vector2d>(const std::vector<Eigen::Vector2d>&)>&

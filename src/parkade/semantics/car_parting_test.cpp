@@ -15,7 +15,7 @@ void addFace(const Vector2d& from, const Vector2d& to, Points& points) {
   for (int i = 0; i <= count; ++i) points.push_back(from + i * (to - from) / count);
 }
 
-std::vector<Points> parted(const Points& swept) {
+std::vector<CarEdge> parted(const Points& swept) {
   constexpr double kNotch = 0.14;
   return partCars(swept, {3.0, 0.0}, kNotch, {}, [](const Points& points) { return points; });
 }
@@ -25,9 +25,9 @@ TEST(CarParting, MoreThanACarPartsWhereTwoFitBest) {
   addFace({0.0, 3.0}, {2.8, 3.0}, swept);
   const std::size_t first = swept.size();
   addFace({3.0, 3.8}, {6.0, 3.8}, swept);
-  const std::vector<Points> cars = parted(swept);
+  const std::vector<CarEdge> cars = parted(swept);
   ASSERT_EQ(cars.size(), 2U);
-  EXPECT_EQ(cars[0].size(), first);
+  EXPECT_EQ(cars[0].swept.size(), first);
 }
 
 TEST(CarParting, AWallOfOneFaceStaysOne) {

@@ -64,11 +64,11 @@ Points onFloor(const Points& swept, const BevViews& views, const BevGeometry& ge
   return out;
 }
 
-AgentDetection vehicleOf(const Points& swept, const ContactEdge& edge, const BevLabels& labels,
+AgentDetection vehicleOf(const CarEdge& car, const ContactEdge& edge, const BevLabels& labels,
                          const BevViews& views, double attitude_sigma,
                          const AgentOptions& options) {
-  const BevViews::View& view = views.viewAt(labels.geometry, swept[swept.size() / 2]);
-  const Points points = onFloor(swept, views, labels.geometry, options.body_clearance_m);
+  const BevViews::View& view = views.viewAt(labels.geometry, car.swept[car.swept.size() / 2]);
+  const Points& points = car.floor;
   AgentDetection agent;
   agent.semantic_class = SemanticClass::kVehicle;
   agent.viewer = view.foot;
@@ -102,10 +102,10 @@ void findVehicles(const ContactFinder& finder, const BevLabels& labels,
     const auto floor = [&](const Points& swept) {
       return onFloor(swept, views, labels.geometry, options.body_clearance_m);
     };
-    for (const Points& swept :
+    for (const CarEdge& car :
          partCars(sweepOver(edge.points, middle), middle, options.notch_m, slots, floor)) {
-      if (reachOf(swept, 0, swept.size()) < kLeastEdge) continue;
-      out.push_back(vehicleOf(swept, edge, labels, views, attitude_sigma, options));
+      if (reachOf(car.swept, 0, car.swept.size()) < kLeastEdge) continue;
+      out.push_back(vehicleOf(car, edge, labels, views, attitude_sigma, options));
     }
   }
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "parkade/geometry/planar.hpp"
 #include "parkade/semantics/marking_pieces.hpp"
 
 namespace parkade {
@@ -154,9 +155,6 @@ class SlotGround {
   }
 
  private:
-  static double cross(const Vector2d& a, const Vector2d& b) {
-    return a.x() * b.y() - a.y() * b.x();
-  }
   [[nodiscard]] bool inside(const Vector2d& p, double before) const {
     const double a = cross(p - corners_[0], side_) / area_;
     const double b = cross(front_, p - corners_[0]) / area_;
