@@ -1,0 +1,358 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The odometry on recorded drives with a known truth, over and over: pictures are tracked once and
+// the tracks kept in a file beside the recording, so that an option of the estimator is judged on
+// many drives within a minute. For example
+//   parkade_odometry_study SEQ... --set window.keyframes=8 --set imu_noise_factor=1
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <opencv2/core/utility.hpp>
+#include <string>
+#include <vector>
+
+#include "parkade/core/random.hpp"
+#include "parkade/eval/consistency.hpp"
+#include "parkade/eval/evaluation.hpp"
+#include "parkade/io/sequence_reader.hpp"
+#include "parkade/io/trajectory_io.hpp"
+#include "parkade/pipeline/mapping_run.hpp"
+#include "parkade/vio/length_error.hpp"
+
+namespace parkade {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+struct Arguments {
+  std::vector<std::string> sequences;
+  std::vector<std::string> sets;
+  std::vector<std::string> tracking;
+  std::string name = "tracks.bin";
+  std::string out;
+  std::vector<double> calib_error;
+  bool per_drive = false;
+};
+
+struct Drive {
+  std::string path;
+  Rig rig;
+  Trajectory truth;
+  std::vector<ImuSample> imu;
+  std::vector<WheelSample> wheel;
+  std::vector<TrackSet> frames;
+};
+
+template <class T>
+void put(std::ofstream& file, const T& value) {
+  file.write(reinterpret_cast<const char*>(&value), sizeof value);
+}
+template <class T>
+bool get(std::ifstream& file, T& value) {
+  return static_cast<bool>(file.read(reinterpret_cast<char*>(&value), sizeof value));
+}
+
+void writeTracks(const std::string& path, const std::vector<TrackSet>& frames) {
+  std::ofstream file(path, std::ios::binary);
+  for (const TrackSet& tracks : frames) {
+    put(file, tracks.t_ns);
+    put(file, tracks.camera_ok.size());
+    for (const std::uint8_t ok : tracks.camera_ok) put(file, ok);
+    put(file, tracks.observations.size());
+    for (const TrackObservation& o : tracks.observations) put(file, o);
+  }
+}
+
+bool readTracks(const std::string& path, std::vector<TrackSet>& frames) {
+  std::ifstream file(path, std::ios::binary);
+  TrackSet tracks;
+  std::size_t count = 0;
+  while (file && get(file, tracks.t_ns)) {
+    if (!get(file, count)) return false;
+    tracks.camera_ok.resize(count);
+    for (std::uint8_t& ok : tracks.camera_ok) get(file, ok);
+    if (!get(file, count)) return false;
+    tracks.observations.resize(count);
+    for (TrackObservation& o : tracks.observations) get(file, o);
+    frames.push_back(tracks);
+  }
+  return !frames.empty();
+}
+
+/// Passes a source on and keeps its inertial readings.
+class ListeningSource : public SensorSource {
+ public:
+  ListeningSource(SensorSource& source, Drive& drive) : source_(source), drive_(drive) {}
+  [[nodiscard]] const SensorSourceInfo& info() const override { return source_.info(); }
+  Result<std::optional<SensorEvent>> next() override {
+    Result<std::optional<SensorEvent>> event = source_.next();
+    if (event && event->has_value()) {
+      if (const auto* imu = std::get_if<ImuSample>(&**event)) drive_.imu.push_back(*imu);
+      if (const auto* wheel = std::get_if<WheelSample>(&**event)) drive_.wheel.push_back(*wheel);
+    }
+    return event;
+  }
+
+ private:
+  SensorSource& source_;
+  Drive& drive_;
+};
+
+class TrackKeeper : public PipelineObserver {
+ public:
+  explicit TrackKeeper(Drive& drive) : drive_(drive) {}
+  void onTracks(const TracksEvent& event) override { drive_.frames.push_back(event.tracks); }
+
+ private:
+  Drive& drive_;
+};
+
+template <class T>
+void putAll(std::ofstream& file, const std::vector<T>& values) {
+  put(file, values.size());
+  for (const T& value : values) put(file, value);
+}
+template <class T>
+bool getAll(std::ifstream& file, std::vector<T>& values) {
+  std::size_t count = 0;
+  if (!get(file, count)) return false;
+  values.resize(count);
+  for (T& value : values) {
+    if (!get(file, value)) return false;
+  }
+  return true;
+}
+
+Status load(const Arguments& arguments, Drive& drive) {
+  SequenceReaderOptions options;
+  auto reader = SequenceReader::open(drive.path, options);
+  if (!reader) return reader.error();
+  drive.rig = (*reader)->rig();
+  auto truth = readReference(drive.path);
+  if (!truth) return truth.error();
+  drive.truth = truth->poses;
+  const std::string cache = drive.path + "/" + arguments.name;
+  const std::string readings = drive.path + "/" + arguments.name + ".imu";
+  if (std::filesystem::exists(cache) && std::filesystem::exists(readings)) {
+    std::ifstream file(readings, std::ios::binary);
+    if (readTracks(cache, drive.frames) && getAll(file, drive.imu) && getAll(file, drive.wheel)) {
+      return {};
+    }
+  }
+  PipelineOptions pipeline;
+  for (const std::string& set : arguments.tracking) {
+    if (Status status = setOption(asOptions(pipeline), set); !status) return status;
+  }
+  auto run = MappingRun::create(drive.rig, pipeline, 2);
+  if (!run) return run.error();
+  ListeningSource source(**reader, drive);
+  TrackKeeper keeper(drive);
+  (*run)->addObserver(&keeper);
+  if (Status done = (*run)->run(source); !done) return done;
+  writeTracks(cache, drive.frames);
+  std::ofstream file(readings, std::ios::binary);
+  putAll(file, drive.imu);
+  putAll(file, drive.wheel);
+  return {};
+}
+
+// A rig whose cameras are told wrong about and along each axis (standard deviations, rad and m).
+Rig disturbed(Rig rig, double rotation, double position, std::uint64_t seed) {
+  Random random(seed);
+  const auto normals = [&] {
+    const double x = random.normal();
+    const double y = random.normal();
+    return Eigen::Vector3d(x, y, random.normal());
+  };
+  for (RigCamera& camera : rig.cameras) {
+    const Eigen::Vector3d turn = rotation * normals();
+    camera.T_vehicle_cam.rotation() = camera.T_vehicle_cam.rotation() * SO3::exp(turn);
+    camera.T_vehicle_cam.translation() += position * normals();
+  }
+  return rig;
+}
+
+double yawOf(const SE3& T) {
+  const Eigen::Matrix3d R = T.rotation().matrix();
+  return std::atan2(R(1, 0), R(0, 0));
+}
+
+double wrapped(double angle) {
+  return std::remainder(angle, 2.0 * std::numbers::pi);
+}
+
+/// Squares of what headings and places change against the truth over a stretch.
+struct Stretch {
+  double seconds;
+  double heading_squares = 0.0;
+  double along_squares = 0.0;
+  double across_squares = 0.0;
+  int count = 0;
+};
+
+struct Score {
+  double rmse = 0.0;
+  double aligned = 0.0;
+  double heading_deg = 0.0;
+  double nees_position = 0.0;
+  double nees_yaw = 0.0;
+  double ms = 0.0;
+  std::array<Stretch, 3> stretches{Stretch{1.0}, Stretch{5.0}, Stretch{15.0}};
+};
+
+void addStretches(const Trajectory& estimate, const Trajectory& truth, Score& score) {
+  AssociationOptions how;
+  how.interpolate = true;
+  const auto pairs = associate(estimate, truth, how);
+  if (!pairs) return;
+  for (Stretch& stretch : score.stretches) {
+    std::size_t from = 0;
+    const Trajectory& ours = pairs->estimate;
+    for (std::size_t to = 1; to < pairs->size(); ++to) {
+      if (toSeconds(ours[to].t_ns - ours[from].t_ns) < stretch.seconds) continue;
+      const SE3 moved = ours[from].T_world_body.inverse() * ours[to].T_world_body;
+      const SE3 really =
+          pairs->reference[from].T_world_body.inverse() * pairs->reference[to].T_world_body;
+      from = to;
+      if (really.translation().norm() < 0.5 * stretch.seconds) continue;  // at rest, about
+      const SE3 error = really.inverse() * moved;
+      stretch.heading_squares += std::pow(wrapped(yawOf(error)) / kDegree, 2.0);
+      stretch.along_squares += std::pow(error.translation().x(), 2.0);
+      stretch.across_squares += std::pow(error.translation().y(), 2.0);
+      ++stretch.count;
+    }
+  }
+}
+
+Score judge(const Drive& drive, const VioOptions& options, const std::string& out) {
+  VioEstimator estimator(drive.rig, options);
+  Trajectory estimate;
+  PoseCovariances covariances;
+  std::size_t next = 0;
+  const std::int64_t begin = cv::getTickCount();
+  std::size_t wheel = 0;
+  for (const TrackSet& tracks : drive.frames) {
+    while (next < drive.imu.size() && drive.imu[next].t_ns <= tracks.t_ns) {
+      estimator.addImu(drive.imu[next++]);
+    }
+    if (next < drive.imu.size()) estimator.addImu(drive.imu[next++]);
+    while (wheel < drive.wheel.size() && drive.wheel[wheel].t_ns <= tracks.t_ns) {
+      estimator.addWheel(drive.wheel[wheel++]);
+    }
+    PoseEstimate pose = estimator.addTracks(tracks);
+    addLengthError(estimator.lengthSigma(), pose);  // as a run tells it
+    if (pose.health == Health::kInitialising) continue;
+    estimate.push_back({pose.t_ns, pose.T_odom_vehicle});
+    covariances.push_back({pose.t_ns, pose.covariance.topLeftCorner<6, 6>()});
+  }
+  Score score;
+  score.ms = 1e3 * static_cast<double>(cv::getTickCount() - begin) / cv::getTickFrequency() /
+             static_cast<double>(drive.frames.size());
+  EvaluationOptions how;
+  how.align = "origin";
+  if (const auto joined = evaluate(estimate, drive.truth, how)) {
+    score.rmse = joined->ape.rmse;
+    score.heading_deg = joined->ape_heading_deg.rmse;
+  }
+  how.align = "se3";
+  if (const auto aligned = evaluate(estimate, drive.truth, how)) score.aligned = aligned->ape.rmse;
+  if (const auto consistency = poseConsistency(estimate, covariances, drive.truth)) {
+    score.nees_position = consistency->position;
+    score.nees_yaw = consistency->yaw;
+  }
+  addStretches(estimate, drive.truth, score);
+  if (!out.empty()) {
+    const std::string name = std::filesystem::path(drive.path).filename().string();
+    (void)writeTrajectory(out + "/" + name + ".tum", estimate, TrajectoryFormat::kTum);
+  }
+  return score;
+}
+
+void print(const std::string& name, const Score& s) {
+  fmt::print("{:<14} rmse {:.4f} aligned {:.4f} heading {:.4f} NEES p {:5.2f} yaw {:5.2f} ", name,
+             s.rmse, s.aligned, s.heading_deg, s.nees_position, s.nees_yaw);
+  for (const Stretch& stretch : s.stretches) {
+    const double n = std::max(stretch.count, 1);
+    fmt::print("| {:.0f} s: {:.4f} deg {:.1f} {:.1f} mm ", stretch.seconds,
+               std::sqrt(stretch.heading_squares / n), 1e3 * std::sqrt(stretch.along_squares / n),
+               1e3 * std::sqrt(stretch.across_squares / n));
+  }
+  fmt::print("| {:.1f} ms\n", s.ms);
+  std::fflush(stdout);
+}
+
+int study(const Arguments& arguments) {
+  VioOptions options;
+  for (const std::string& set : arguments.sets) {
+    if (const Status status = setOption(asOptions(options), set); !status) {
+      fmt::print(stderr, "{}\n", status.error().message);
+      return 2;
+    }
+  }
+  Score sum;
+  int drives = 0;
+  double worst = 0.0;
+  for (const std::string& path : arguments.sequences) {
+    Drive drive;
+    drive.path = path;
+    if (const Status status = load(arguments, drive); !status) {
+      fmt::print(stderr, "{}\n", status.error().message);
+      return 1;
+    }
+    if (arguments.calib_error.size() == 2) {
+      drive.rig = disturbed(drive.rig, arguments.calib_error[0] * kDegree,
+                            0.01 * arguments.calib_error[1], static_cast<std::uint64_t>(drives));
+    }
+    const Score score = judge(drive, options, arguments.out);
+    if (arguments.per_drive) print(std::filesystem::path(path).filename().string(), score);
+    ++drives;
+    worst = std::max(worst, score.rmse);
+    sum.rmse += score.rmse;
+    sum.aligned += score.aligned;
+    sum.heading_deg += score.heading_deg;
+    sum.nees_position += score.nees_position;
+    sum.nees_yaw += score.nees_yaw;
+    sum.ms += score.ms;
+    for (std::size_t k = 0; k < sum.stretches.size(); ++k) {
+      sum.stretches[k].heading_squares += score.stretches[k].heading_squares;
+      sum.stretches[k].along_squares += score.stretches[k].along_squares;
+      sum.stretches[k].across_squares += score.stretches[k].across_squares;
+      sum.stretches[k].count += score.stretches[k].count;
+    }
+  }
+  for (double* value : {&sum.rmse, &sum.aligned, &sum.heading_deg, &sum.nees_position,
+                        &sum.nees_yaw, &sum.ms}) {
+    *value /= drives;
+  }
+  print(fmt::format("mean of {}", drives), sum);
+  fmt::print("worst rmse {:.4f}\n", worst);
+  return 0;
+}
+
+}  // namespace
+}  // namespace parkade
+
+int main(int argc, char** argv) {
+  parkade::Arguments arguments;
+  CLI::App app("Odometry on recorded drives with a known truth, their pictures tracked once");
+  app.add_option("sequences", arguments.sequences, "Folders of recordings")->required();
+  app.add_option("--set", arguments.sets, "An option of the estimator, as window.keyframes=8");
+  app.add_option("--tracking-set", arguments.tracking,
+                 "An option of the run that tracks, as tracking.detection.features=200");
+  app.add_option("--tracks", arguments.name, "File of the tracks in each folder")
+      ->capture_default_str();
+  app.add_option("--calib-error", arguments.calib_error,
+                 "Tell the estimator a rig that is wrong by DEG,CM, another for each drive")
+      ->delimiter(',')
+      ->expected(2);
+  app.add_option("--out", arguments.out, "Write the trajectories into this folder");
+  app.add_flag("--drives", arguments.per_drive, "Print every drive, not the mean alone");
+  CLI11_PARSE(app, argc, argv);
+  return parkade::study(arguments);
+}
