@@ -19,6 +19,8 @@ constexpr double kSaneBiasAccel = 5.0;     // m/s^2
 constexpr int kMinTrackedLandmarks = 10;   // fewer: degraded
 constexpr double kKeepReadings = 2.0;      // s
 constexpr double kHeldCalibration = 1e-6;  // m, rad, s
+constexpr double kSettledPosition = 0.01;  // m, a step that needs no second one
+constexpr double kSettledRotation = 1e-3;  // rad
 
 }  // namespace
 
@@ -148,7 +150,10 @@ void VioEstimator::Impl::addFrame(const TrackSet& tracks) {
   const GateResult gate = features_.gateNewest(window_, pose_spread);
   rememberTracks(observations, tracks.t_ns);
   features_.triangulateNew(window_);
-  optimise(options_.window.max_iterations);
+  SolveOptions solve = solveOptions(options_.window.max_iterations);
+  solve.settled_position = kSettledPosition;
+  solve.settled_rotation = kSettledRotation;
+  optimise(solve);
   statistics.rejected_observations += gate.rejected;
   statistics.rejected_cameras = gate.cameras;
   statistics.standstill = still_;
@@ -162,15 +167,14 @@ SolveOptions VioEstimator::Impl::solveOptions(int max_iterations) const {
   return solve;
 }
 
-void VioEstimator::Impl::optimise(int max_iterations) {
+void VioEstimator::Impl::optimise(const SolveOptions& options) {
   const std::vector<WindowFeature*> selected = features_.select(window_);
   // A car at rest teaches nothing about where it was: what it sees again and again is only noise.
   const int rest = still_ ? window_.indexOf(still_anchor_id_) : -1;
   const bool held = rest >= 0 && rest + 1 < static_cast<int>(window_.frames.size());
   const SolveSummary summary =
-      held ? solveAtRest(window_, selected, static_cast<std::size_t>(rest) + 1,
-                         solveOptions(max_iterations))
-           : solveWindow(window_, selected, solveOptions(max_iterations));
+      held ? solveAtRest(window_, selected, static_cast<std::size_t>(rest) + 1, options)
+           : solveWindow(window_, selected, options);
   if (summary.has_covariance) {
     newest_covariance_ = summary.newest_covariance;
     global_covariance_ = summary.global_covariance;

@@ -69,7 +69,7 @@ class VioEstimator::Impl {
   // Each frame set (estimator.cpp).
   void addFrame(const TrackSet& tracks);
   void addBodyVelocity(WindowFrame& frame) const;
-  void optimise(int max_iterations);
+  void optimise(const SolveOptions& options);
   void updateHealth(const TrackSet& tracks, const GateResult& gate);
 
   // Rest (estimator_rest.cpp).

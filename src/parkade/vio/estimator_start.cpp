@@ -95,7 +95,7 @@ bool VioEstimator::Impl::startAtRest() {
   still_anchor_id_ = window_.frames.back().id;
   window_.frames.back().still_since = still_anchor_id_;
   window_.frames.back().keyframe = true;
-  optimise(kStartIterations);
+  optimise(solveOptions(kStartIterations));
   return true;
 }
 
@@ -171,7 +171,7 @@ VioEstimator::Impl::StartTrial VioEstimator::Impl::tryStart(std::vector<NavState
   // The biases' prior is about zero, not about the alignment.
   window_.start.bias = ImuBias{};
   features_.triangulateNew(window_);
-  optimise(kStartIterations);
+  optimise(solveOptions(kStartIterations));
   features_.forgive(window_);
   features_.triangulateNew(window_);
   const std::vector<WindowFeature*> selected = features_.select(window_);

@@ -7,10 +7,10 @@
 namespace parkade {
 
 struct VioWindowOptions {
-  int keyframes = 10;
+  int keyframes = 12;
   int recent_frames = 3;
   int max_iterations = 2;
-  int max_landmarks = 320;
+  int max_landmarks = 800;
   double huber_px = 0.3;
   double outlier_sigma = 3.5;
 
@@ -30,10 +30,10 @@ struct VioWindowOptions {
 };
 
 struct VioKeyframeOptions {
-  double parallax_deg = 1.5;
-  double min_overlap = 0.7;
+  double parallax_deg = 10.0;
+  double min_overlap = 0.4;
   double max_interval_s = 1.0;
-  double distance_m = 0.35;
+  double distance_m = 0.8;
   double rotation_deg = 8.0;
 
   void visit(OptionVisitor& v) {

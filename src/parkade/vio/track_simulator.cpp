@@ -11,6 +11,7 @@
 
 #include "parkade/core/random.hpp"
 #include "parkade/core/units.hpp"
+#include "parkade/vio/length_error.hpp"
 
 namespace parkade::testing {
 namespace {
@@ -386,6 +387,7 @@ std::vector<PoseEstimate> runDrive(const SimulatedDrive& drive, VioEstimator& es
       if (t >= frame.t_ns) break;
     }
     estimates.push_back(estimator.addTracks(frame));
+    addLengthError(estimator.lengthSigma(), estimates.back());
   }
   return estimates;
 }

@@ -68,6 +68,16 @@ void setCovariance(const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>& llt, Eigen::
   summary.has_covariance = true;
 }
 
+// Whether a step moves no frame so far that the terms would have to be linearised again.
+bool isSettled(const Eigen::VectorXd& step, std::size_t frames, const SolveOptions& options) {
+  for (std::size_t i = 0; i < frames; ++i) {
+    const Vector15d of_frame = step.segment<kState>(kState * static_cast<Eigen::Index>(i));
+    if (!(of_frame.head<3>().norm() < options.settled_position)) return false;
+    if (!(of_frame.segment<3>(3).norm() < options.settled_rotation)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 SolveSummary solveWindow(Window& window, const std::vector<WindowFeature*>& features,
@@ -108,7 +118,8 @@ SolveSummary solveWindow(Window& window, const std::vector<WindowFeature*>& feat
     // Damping would pass for knowledge of where the whole window is.
     if (damping == 0.0) setCovariance(llt, window.globalSize(), summary);
     summary.ok = true;
-    if (decrease < options.min_decrease || summary.iterations == options.max_iterations) {
+    if (decrease < options.min_decrease || summary.iterations == options.max_iterations ||
+        isSettled(step, window.frames.size(), options)) {
       summary.final_cost = system.cost() - decrease;
       break;
     }

@@ -15,6 +15,10 @@ struct SolveOptions {
   StillSigma still;
   /// Ends the solve once a step promises to lower the cost (half the chi-square) by less.
   double min_decrease = 1e-2;
+  /// Ends it, too, after a step that moves no frame by more: linearised again, the terms would be
+  /// the same to far less than their noise. 0: never.
+  double settled_position = 0.0;  ///< m
+  double settled_rotation = 0.0;  ///< rad
 };
 
 struct SolveSummary {
