@@ -326,8 +326,8 @@ int study(const Arguments& arguments) {
       sum.stretches[k].count += score.stretches[k].count;
     }
   }
-  for (double* value : {&sum.rmse, &sum.aligned, &sum.heading_deg, &sum.nees_position,
-                        &sum.nees_yaw, &sum.ms}) {
+  for (double* value :
+       {&sum.rmse, &sum.aligned, &sum.heading_deg, &sum.nees_position, &sum.nees_yaw, &sum.ms}) {
     *value /= drives;
   }
   print(fmt::format("mean of {}", drives), sum);

@@ -12,8 +12,8 @@ namespace parkade {
 
 /// How the visual-inertial odometry errs between two frame sets, at least.
 struct OdometryNoiseOptions {
-  double translation = 0.002;
-  double yaw_deg = 0.006;
+  double translation = 0.0014;
+  double yaw_deg = 0.004;
   double height = 0.002;
   double standing = 0.0005;
   double degraded_factor = 5.0;
