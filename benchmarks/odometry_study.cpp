@@ -12,14 +12,15 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <numbers>
 #include <opencv2/core/utility.hpp>
 #include <string>
 #include <vector>
 
 #include "parkade/core/random.hpp"
+#include "parkade/core/units.hpp"
 #include "parkade/eval/consistency.hpp"
 #include "parkade/eval/evaluation.hpp"
+#include "parkade/geometry/se2.hpp"
 #include "parkade/io/sequence_reader.hpp"
 #include "parkade/io/trajectory_io.hpp"
 #include "parkade/pipeline/mapping_run.hpp"
@@ -27,8 +28,6 @@
 
 namespace parkade {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 struct Arguments {
   std::vector<std::string> sequences;
@@ -58,28 +57,36 @@ bool get(std::ifstream& file, T& value) {
   return static_cast<bool>(file.read(reinterpret_cast<char*>(&value), sizeof value));
 }
 
+template <class T>
+void putAll(std::ofstream& file, const std::vector<T>& values) {
+  put(file, values.size());
+  for (const T& value : values) put(file, value);
+}
+template <class T>
+bool getAll(std::ifstream& file, std::vector<T>& values) {
+  std::size_t count = 0;
+  if (!get(file, count)) return false;
+  values.resize(count);
+  for (T& value : values) {
+    if (!get(file, value)) return false;
+  }
+  return true;
+}
+
 void writeTracks(const std::string& path, const std::vector<TrackSet>& frames) {
   std::ofstream file(path, std::ios::binary);
   for (const TrackSet& tracks : frames) {
     put(file, tracks.t_ns);
-    put(file, tracks.camera_ok.size());
-    for (const std::uint8_t ok : tracks.camera_ok) put(file, ok);
-    put(file, tracks.observations.size());
-    for (const TrackObservation& o : tracks.observations) put(file, o);
+    putAll(file, tracks.camera_ok);
+    putAll(file, tracks.observations);
   }
 }
 
 bool readTracks(const std::string& path, std::vector<TrackSet>& frames) {
   std::ifstream file(path, std::ios::binary);
   TrackSet tracks;
-  std::size_t count = 0;
-  while (file && get(file, tracks.t_ns)) {
-    if (!get(file, count)) return false;
-    tracks.camera_ok.resize(count);
-    for (std::uint8_t& ok : tracks.camera_ok) get(file, ok);
-    if (!get(file, count)) return false;
-    tracks.observations.resize(count);
-    for (TrackObservation& o : tracks.observations) get(file, o);
+  while (get(file, tracks.t_ns)) {
+    if (!getAll(file, tracks.camera_ok) || !getAll(file, tracks.observations)) return false;
     frames.push_back(tracks);
   }
   return !frames.empty();
@@ -113,22 +120,6 @@ class TrackKeeper : public PipelineObserver {
   Drive& drive_;
 };
 
-template <class T>
-void putAll(std::ofstream& file, const std::vector<T>& values) {
-  put(file, values.size());
-  for (const T& value : values) put(file, value);
-}
-template <class T>
-bool getAll(std::ifstream& file, std::vector<T>& values) {
-  std::size_t count = 0;
-  if (!get(file, count)) return false;
-  values.resize(count);
-  for (T& value : values) {
-    if (!get(file, value)) return false;
-  }
-  return true;
-}
-
 Status load(const Arguments& arguments, Drive& drive) {
   SequenceReaderOptions options;
   auto reader = SequenceReader::open(drive.path, options);
@@ -144,6 +135,9 @@ Status load(const Arguments& arguments, Drive& drive) {
     if (readTracks(cache, drive.frames) && getAll(file, drive.imu) && getAll(file, drive.wheel)) {
       return {};
     }
+    drive.frames.clear();  // cut off: tracked anew
+    drive.imu.clear();
+    drive.wheel.clear();
   }
   PipelineOptions pipeline;
   for (const std::string& set : arguments.tracking) {
@@ -176,15 +170,6 @@ Rig disturbed(Rig rig, double rotation, double position, std::uint64_t seed) {
     camera.T_vehicle_cam.translation() += position * normals();
   }
   return rig;
-}
-
-double yawOf(const SE3& T) {
-  const Eigen::Matrix3d R = T.rotation().matrix();
-  return std::atan2(R(1, 0), R(0, 0));
-}
-
-double wrapped(double angle) {
-  return std::remainder(angle, 2.0 * std::numbers::pi);
 }
 
 /// Squares of what headings and places change against the truth over a stretch.
@@ -222,7 +207,7 @@ void addStretches(const Trajectory& estimate, const Trajectory& truth, Score& sc
       from = to;
       if (really.translation().norm() < 0.5 * stretch.seconds) continue;  // at rest, about
       const SE3 error = really.inverse() * moved;
-      stretch.heading_squares += std::pow(wrapped(yawOf(error)) / kDegree, 2.0);
+      stretch.heading_squares += std::pow(SE2::fromSE3(error).angle() / kDegree, 2.0);
       stretch.along_squares += std::pow(error.translation().x(), 2.0);
       stretch.across_squares += std::pow(error.translation().y(), 2.0);
       ++stretch.count;
@@ -269,7 +254,10 @@ Score judge(const Drive& drive, const VioOptions& options, const std::string& ou
   addStretches(estimate, drive.truth, score);
   if (!out.empty()) {
     const std::string name = std::filesystem::path(drive.path).filename().string();
-    (void)writeTrajectory(out + "/" + name + ".tum", estimate, TrajectoryFormat::kTum);
+    const std::string path = out + "/" + name + ".tum";
+    if (Status written = writeTrajectory(path, estimate, TrajectoryFormat::kTum); !written) {
+      fmt::print(stderr, "{}\n", written.error().message);
+    }
   }
   return score;
 }
@@ -344,7 +332,8 @@ int main(int argc, char** argv) {
   app.add_option("sequences", arguments.sequences, "Folders of recordings")->required();
   app.add_option("--set", arguments.sets, "An option of the estimator, as window.keyframes=8");
   app.add_option("--tracking-set", arguments.tracking,
-                 "An option of the run that tracks, as tracking.detection.features=200");
+                 "An option of the run that tracks, as tracking.detection.features=200; give it a "
+                 "--tracks file of its own, for one that is there is read as it is");
   app.add_option("--tracks", arguments.name, "File of the tracks in each folder")
       ->capture_default_str();
   app.add_option("--calib-error", arguments.calib_error,
