@@ -52,22 +52,15 @@ class RowCompleter {
       : told_(told), pillars_(pillars), grid_(grid), options_(options) {
     const slot_rows::SquaredSlots squared = slot_rows::squareSlots(told_, grid);
     for (const std::size_t i : squared.moved) moved_.insert(told_[i].id);
-    for (std::size_t k = squared.wrong.size(); k-- > 0;) {
-      replaced_.push_back(told_[squared.wrong[k]].id);
-      told_.erase(told_.begin() + static_cast<std::ptrdiff_t>(squared.wrong[k]));
-    }
+    dropTold(squared.wrong);
     for (const std::size_t i : slot_rows::alignRows(told_)) moved_.insert(told_[i].id);
     gatherMissing();
     for (const SlotEvidence& evidence : evidence_) likelihood_.learn(evidence);
+    dropTold(findUnfounded());
     const std::vector<std::size_t> split =
         slot_rows::splitSlots(told_, pillars, grid, likelihood_, options);
     gatherMissing();
-    for (std::size_t k = split.size(); k-- > 0;) {
-      const auto at = static_cast<std::ptrdiff_t>(split[k]);
-      replaced_.push_back(told_[split[k]].id);
-      told_.erase(told_.begin() + at);
-      evidence_.erase(evidence_.begin() + at);
-    }
+    dropTold(split);
     gone_.assign(told_.size(), false);
     misfits_ = findMisfits(told_);
   }
@@ -107,6 +100,29 @@ class RowCompleter {
   }
 
  private:
+  // Indices in their order.
+  void dropTold(const std::vector<std::size_t>& slots) {
+    for (std::size_t k = slots.size(); k-- > 0;) {
+      const auto at = static_cast<std::ptrdiff_t>(slots[k]);
+      replaced_.push_back(told_[slots[k]].id);
+      told_.erase(told_.begin() + at);
+      if (slots[k] < evidence_.size()) evidence_.erase(evidence_.begin() + at);
+    }
+  }
+
+  // Slots of a few pictures that the map as a whole speaks against.
+  [[nodiscard]] std::vector<std::size_t> findUnfounded() const {
+    constexpr int kFewLooks = 10;
+    std::vector<std::size_t> unfounded;
+    for (std::size_t i = 0; i < told_.size(); ++i) {
+      if (told_[i].observations < kFewLooks &&
+          (isDenied(evidence_[i]) || likelihood_.lacksSide(evidence_[i]))) {
+        unfounded.push_back(i);
+      }
+    }
+    return unfounded;
+  }
+
   // Of the slots that came last.
   void gatherMissing() {
     for (std::size_t i = evidence_.size(); i < told_.size(); ++i) {

@@ -131,7 +131,7 @@ class GapFiller {
       const SlotEvidence& e = place.evidence;
       const double log_odds = kPrior + likelihood_.side(forwards ? e.right : e.left) +
                               likelihood_.entrance(e.entrance) + SlotLikelihood::vehicle(e);
-      if (isDenied(e) || log_odds < options_.min_log_odds) break;
+      if (isDenied(e) || likelihood_.lacksSide(e) || log_odds < options_.min_log_odds) break;
       filling.log_odds += log_odds;
       filling.merit += kPrior + likelihood_.whole(e);
       filling.slots.push_back(place.slot);
@@ -161,10 +161,13 @@ class GapFiller {
     constexpr double kNextBay = 1.5;
     double prior = after_slot && before_slot ? kBetween : kAlone;
     if (after_slot != before_slot) prior = kBeside;
+    const bool past_begin = hasSlotBy(gap.begin, true);
+    const bool past_end = hasSlotBy(gap.end, false);
     if (!after_slot && !before_slot) {
-      prior += kNextBay * (hasSlotBy(gap.begin, true) ? 1.0 : 0.0);
-      prior += kNextBay * (hasSlotBy(gap.end, false) ? 1.0 : 0.0);
+      prior += kNextBay * (past_begin ? 1.0 : 0.0);
+      prior += kNextBay * (past_end ? 1.0 : 0.0);
     }
+    const bool is_enclosed = (after_slot || past_begin) && (before_slot || past_end);
     if (!pattern_.of_row) prior += kOtherShape;
     prior += more;
     Filling filling;
@@ -173,7 +176,7 @@ class GapFiller {
     double vehicles = 0.0;
     for (std::size_t i = 0; i < places.size(); ++i) {
       const SlotEvidence& e = places[i].evidence;
-      if (isDenied(e)) return {};
+      if (isDenied(e) || (!is_enclosed && likelihood_.lacksSide(e))) return {};
       // Lines that known slots have as well say nothing new.
       (i == 0 && after_slot ? known : filling.merit) += likelihood_.side(e.left);
       if (i + 1 == places.size())

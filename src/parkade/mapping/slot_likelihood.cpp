@@ -21,6 +21,7 @@ void SlotLikelihood::Lines::add(const SlotEvidence::Line& line) {
   if (line.seen_m < kLeastSeen) return;
   ++all;
   if (shows(line)) ++shown;
+  contrast += line.contrast();
 }
 
 double SlotLikelihood::Lines::logOdds(const SlotEvidence::Line& line) const {
@@ -59,6 +60,19 @@ double SlotLikelihood::vehicle(const SlotEvidence& evidence) {
 double SlotLikelihood::whole(const SlotEvidence& evidence) const {
   return side(evidence.left) + side(evidence.right) + entrance(evidence.entrance) +
          vehicle(evidence);
+}
+
+bool SlotLikelihood::lacksSide(const SlotEvidence& evidence) const {
+  constexpr double kWorn = 0.6;    // contrast of sides told, on average
+  constexpr double kSeen = 0.9;    // of the slot
+  constexpr double kEmpty = 0.2;   // covered by vehicles at most
+  constexpr double kPlainly = 3.0;  // m of a side in sight
+  if (sides_.contrast < kWorn * sides_.all) return false;
+  if (evidence.seen < kSeen || evidence.vehicle > kEmpty) return false;
+  const auto is_bare = [](const SlotEvidence::Line& line) {
+    return line.seen_m > kPlainly && !shows(line);
+  };
+  return is_bare(evidence.left) || is_bare(evidence.right);
 }
 
 bool isDenied(const SlotEvidence& evidence) {

@@ -19,11 +19,15 @@ class SlotLikelihood {
   [[nodiscard]] static double vehicle(const SlotEvidence& evidence);
   /// Of all that there is of a slot alone.
   [[nodiscard]] double whole(const SlotEvidence& evidence) const;
+  /// Whether the slot would be free and in plain sight, and one of its sides is bare all the same.
+  /// Never where the paint of the slots told is worn.
+  [[nodiscard]] bool lacksSide(const SlotEvidence& evidence) const;
 
  private:
   struct Lines {
     int all = 0;
     int shown = 0;
+    double contrast = 0.0;  // sum
     void add(const SlotEvidence::Line& line);
     [[nodiscard]] double logOdds(const SlotEvidence::Line& line) const;
   };

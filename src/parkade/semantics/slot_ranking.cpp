@@ -223,8 +223,9 @@ class SlotRanking {
 
   // Beside a pillar the gap between two slots is easily taken into one of them: the line between is
   // hidden or worn. Where others are narrower, a wide one is told only if the place of that line is
-  // seen to be bare. What borders on a perpendicular slot is no parallel one, and the entrances of
-  // slots that share a line lie in one line.
+  // seen to be bare, or if its front is painted from corner to corner and no further: nothing was
+  // taken into it then. What borders on a perpendicular slot is no parallel one, and the entrances
+  // of slots that share a line lie in one line.
   [[nodiscard]] double doubtBy(const SlotCandidate& c, const SlotCandidate& other) const {
     constexpr double kSure = 1.0;    // log-odds of what speaks against others
     constexpr double kWider = 0.35;  // m
@@ -237,7 +238,7 @@ class SlotRanking {
     double doubt = 0.0;
     if (share && other.score > c.score && !inLine(c, other)) doubt += 2.0;
     const double narrower = other.width();
-    if (c.shape != SlotShape::kParallel && c.width() - narrower > kWider) {
+    if (c.shape != SlotShape::kParallel && c.width() - narrower > kWider && !frontEndsAtBoth(c)) {
       doubt += isBareAt(c, narrower) ? kBare : 2.0;
     }
     return doubt;
@@ -259,6 +260,20 @@ class SlotRanking {
     constexpr double kStraight = 0.9903;  // cosine of 8 degrees
     const Vector2d a = c.front().normalized();
     return a.dot(other.front().normalized()) > kStraight;
+  }
+
+  // Whether the front is painted all along and ends at both corners.
+  [[nodiscard]] bool frontEndsAtBoth(const SlotCandidate& c) const {
+    constexpr double kPainted = 0.8;
+    constexpr double kBare = 0.9;
+    constexpr double kPast = 0.15;  // m from a corner
+    constexpr double kFar = 0.55;
+    const Vector2d u = c.front().normalized();
+    const Vector2d left = c.left->p;
+    const Vector2d right = c.right->p;
+    return probe_.along(left + kPast * u, right - kPast * u).paint > kPainted &&
+           probe_.along(left - kPast * u, left - kFar * u).floor > kBare &&
+           probe_.along(right + kPast * u, right + kFar * u).floor > kBare;
   }
 
   // Whether both places of a side line that would leave a slot of this width hold nothing but

@@ -44,6 +44,27 @@ TEST(SlotRanking, WideSlotsMayStandAlone) {
   expectRow(row, slotsOf(floor), SlotShape::kPerpendicular, 0.02);
 }
 
+// A car hides where narrower slots, as those beside, would have a line.
+TEST(SlotRanking, AWideSlotIsOneWhereItsFrontEnds) {
+  for (const bool goes_on : {false, true}) {
+    Row narrow;
+    narrow.x0 = 7.0;
+    narrow.count = 3;
+    Row wide = narrow;
+    wide.x0 = narrow.front(narrow.count).x() - 0.8;
+    wide.width = 3.6;
+    wide.count = 1;
+    PaintedFloor floor;
+    narrow.paint(floor);
+    wide.paint(floor);
+    if (goes_on) floor.line(wide.front(1), wide.front(1) - Vector2d(0.8, 0.0), kLine);
+    floor.polygon({wide.front(0) + Vector2d(-0.3, -0.5), wide.front(1) + Vector2d(0.3, -0.5),
+                   wide.rear(1) + Vector2d(0.3, 0.0), wide.rear(0) + Vector2d(-0.3, 0.0)},
+                  SemanticClass::kVehicle, 30);
+    EXPECT_EQ(slotAt(slotsOf(floor), wide.front(0)) == nullptr, goes_on);
+  }
+}
+
 TEST(SlotRanking, SlotsEndWhereLaneLinesBegin) {
   Row row;
   row.width = 3.4;
