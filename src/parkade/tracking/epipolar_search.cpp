@@ -3,9 +3,10 @@
 #include "parkade/tracking/epipolar_search.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
+
+#include "parkade/tracking/grid_sampling.hpp"
 
 namespace parkade {
 namespace {
@@ -20,28 +21,15 @@ constexpr double kKnownRange = 0.25;  // share of a known inverse depth that is 
 constexpr double kMaxStretch = 3.0;   // warps beyond this hold too few pixels to compare
 constexpr int kMaxPlaces = 600;
 
-using Pattern = std::array<float, kPixels>;
+using Pattern = Eigen::Matrix<float, kPixels, 1>;
 
 // Zero mean, unit norm; false where the pattern is flat.
 bool normalise(Pattern& pattern) {
-  float mean = 0.0F;
-  for (const float v : pattern) mean += v;
-  mean /= kPixels;
-  float square = 0.0F;
-  for (float& v : pattern) {
-    v -= mean;
-    square += v * v;
-  }
+  pattern.array() -= pattern.mean();
+  const float square = pattern.squaredNorm();
   if (square < 4.0F * kPixels) return false;
-  const float scale = 1.0F / std::sqrt(square);
-  for (float& v : pattern) v *= scale;
+  pattern *= 1.0F / std::sqrt(square);
   return true;
-}
-
-float dot(const Pattern& a, const Pattern& b) {
-  float sum = 0.0F;
-  for (std::size_t i = 0; i < kPixels; ++i) sum += a[i] * b[i];
-  return sum;
 }
 
 // A place on the curve where the depth is known exactly.
@@ -101,10 +89,10 @@ double correlate(const SearchImage& b, const Pattern& wanted, const Eigen::Vecto
                  const Eigen::Matrix2d& warp) {
   Pattern seen;
   // Pixel centres: coarse = fine / 2 for an image decimated at even pixels (cv::pyrDown).
-  if (!sampleGrid(b.coarse, 0.5 * pixel, warp, kRadius, 1.0, seen.data()) || !normalise(seen)) {
+  if (!sampleGrid(b.coarse, 0.5 * pixel, warp, kRadius, seen.data()) || !normalise(seen)) {
     return -1.0;
   }
-  return dot(wanted, seen);
+  return wanted.dot(seen);
 }
 
 std::vector<Place> walkCurve(const SearchImage& b, const SE3& T_b_a, const PatchRays& rays,
@@ -187,8 +175,7 @@ std::optional<CrossMatch> searchEpipolar(const SearchImage& a, const SearchImage
   const std::optional<PatchRays> rays = raysAround(*a.camera, pixel_a);
   Pattern wanted;
   if (!rays ||
-      !sampleGrid(a.coarse, 0.5 * pixel_a, Eigen::Matrix2d::Identity(), kRadius, 1.0,
-                  wanted.data()) ||
+      !sampleGrid(a.coarse, 0.5 * pixel_a, Eigen::Matrix2d::Identity(), kRadius, wanted.data()) ||
       !normalise(wanted)) {
     return std::nullopt;
   }

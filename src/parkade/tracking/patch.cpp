@@ -4,7 +4,10 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <array>
 #include <cmath>
+
+#include "parkade/tracking/grid_sampling.hpp"
 
 namespace parkade {
 namespace {
@@ -16,20 +19,22 @@ constexpr double kMaxStepPx = 3.0;       // a larger step is a failure
 constexpr double kMinNoiseGrey = 1.0;    // an 8-bit camera is not quieter than this
 constexpr double kPriorNoiseGrey = 4.0;  // grey levels, for the weight of the shape's prior
 
+using Values = Eigen::Matrix<float, Patch::kCount, 1>;
+
 // Weights of the patch's pixels; they sum to 1.
-const std::array<float, Patch::kCount>& weights() {
-  static const std::array<float, Patch::kCount> kWeights = [] {
-    std::array<float, Patch::kCount> w{};
+const Values& weights() {
+  static const Values kWeights = [] {
+    Values w;
     double sum = 0.0;
     int k = 0;
     for (int y = -Patch::kRadius; y <= Patch::kRadius; ++y) {
       for (int x = -Patch::kRadius; x <= Patch::kRadius; ++x, ++k) {
         const double g = std::exp(-0.5 * (x * x + y * y) / (kWindowSigma * kWindowSigma));
-        w[static_cast<std::size_t>(k)] = static_cast<float>(g);
+        w[k] = static_cast<float>(g);
         sum += g;
       }
     }
-    for (float& v : w) v = static_cast<float>(v / sum);
+    w = (w.cast<double>() / sum).cast<float>();
     return w;
   }();
   return kWeights;
@@ -37,113 +42,52 @@ const std::array<float, Patch::kCount>& weights() {
 
 // Pixels that count in full: (sum w)^2 / sum w^2.
 double effectiveCount() {
-  static const double kEffective = [] {
-    double squares = 0.0;
-    for (const float w : weights()) squares += static_cast<double>(w) * w;
-    return 1.0 / squares;
-  }();
+  static const double kEffective = 1.0 / weights().cast<double>().squaredNorm();
   return kEffective;
 }
 
 }  // namespace
 
-bool sampleGrid(const cv::Mat& image, const Eigen::Vector2d& pixel, const Eigen::Matrix2d& warp,
-                int radius, double spacing, float* out) {
-  const double reach = radius * spacing;
-  const double reach_x = reach * (std::abs(warp(0, 0)) + std::abs(warp(0, 1)));
-  const double reach_y = reach * (std::abs(warp(1, 0)) + std::abs(warp(1, 1)));
-  if (!(pixel.x() - reach_x >= 0.0 && pixel.y() - reach_y >= 0.0 &&
-        pixel.x() + reach_x < image.cols - 1.001 && pixel.y() + reach_y < image.rows - 1.001)) {
-    return false;  // NaN ends here as well
-  }
-  const auto stride = static_cast<std::ptrdiff_t>(image.step[0]);
-  const std::uint8_t* data = image.data;
-  const float dx = static_cast<float>(warp(0, 0) * spacing);
-  const float dy = static_cast<float>(warp(1, 0) * spacing);
-  for (int y = -radius; y <= radius; ++y) {
-    const double offset = y * spacing;
-    float u = static_cast<float>(pixel.x() + warp(0, 1) * offset - warp(0, 0) * reach);
-    float v = static_cast<float>(pixel.y() + warp(1, 1) * offset - warp(1, 0) * reach);
-    for (int x = -radius; x <= radius; ++x, u += dx, v += dy, ++out) {
-      // Sums in single precision may reach a hair below zero at the very border.
-      const int iu = std::max(static_cast<int>(u), 0);
-      const int iv = std::max(static_cast<int>(v), 0);
-      const float fu = u - static_cast<float>(iu);
-      const float fv = v - static_cast<float>(iv);
-      const std::uint8_t* p = data + iv * stride + iu;
-      const auto p00 = static_cast<float>(p[0]);
-      const auto p01 = static_cast<float>(p[1]);
-      const auto p10 = static_cast<float>(p[stride]);
-      const auto p11 = static_cast<float>(p[stride + 1]);
-      const float top = p00 + fu * (p01 - p00);
-      const float bottom = p10 + fu * (p11 - p10);
-      *out = top + fv * (bottom - top);
-    }
-  }
-  return true;
-}
-
 std::shared_ptr<const Patch> Patch::sample(const cv::Mat& image, const Eigen::Vector2d& pixel) {
   constexpr int kWide = kSize + 2;
   std::array<float, static_cast<std::size_t>(kWide) * kWide> wide{};
-  if (!sampleGrid(image, pixel, Eigen::Matrix2d::Identity(), kRadius + 1, 1.0, wide.data())) {
+  if (!sampleGrid(image, pixel, Eigen::Matrix2d::Identity(), kRadius + 1, wide.data())) {
     return nullptr;
   }
   auto patch = std::make_shared<Patch>();
-  const auto& w = weights();
+  const Values& w = weights();
   // 1. Values and steepest descent images of (d11, d21, d12, d22, dx, dy).
-  double mean = 0.0;
-  std::size_t k = 0;
+  Eigen::Index k = 0;
   for (int y = -kRadius; y <= kRadius; ++y) {
     for (int x = -kRadius; x <= kRadius; ++x, ++k) {
-      const std::size_t c = static_cast<std::size_t>((y + kRadius + 1) * kWide + x + kRadius + 1);
+      const auto c = static_cast<std::size_t>((y + kRadius + 1) * kWide + x + kRadius + 1);
       patch->values_[k] = wide[c];
-      mean += static_cast<double>(w[k]) * wide[c];
       const float gx = 0.5F * (wide[c + 1] - wide[c - 1]);
       const float gy = 0.5F * (wide[c + kWide] - wide[c - kWide]);
       const auto fx = static_cast<float>(x);
       const auto fy = static_cast<float>(y);
-      patch->descent_[0][k] = gx * fx;
-      patch->descent_[1][k] = gy * fx;
-      patch->descent_[2][k] = gx * fy;
-      patch->descent_[3][k] = gy * fy;
-      patch->descent_[4][k] = gx;
-      patch->descent_[5][k] = gy;
+      patch->descent_.row(k) << gx * fx, gy * fx, gx * fy, gy * fy, gx, gy;
     }
   }
-  double variance = 0.0;
-  for (k = 0; k < kCount; ++k) {
-    patch->values_[k] -= static_cast<float>(mean);
-    variance += static_cast<double>(w[k]) * patch->values_[k] * patch->values_[k];
-  }
-  if (variance < kMinVariance) return nullptr;
-  patch->variance_ = variance;
+  patch->values_.array() -= w.dot(patch->values_);
+  const Values weighted = w.cwiseProduct(patch->values_);
+  patch->variance_ = weighted.dot(patch->values_);
+  if (patch->variance_ < kMinVariance) return nullptr;
   // 2. Project out offset and gain: what they explain is no motion.
-  for (auto& image_of_parameter : patch->descent_) {
-    double offset = 0.0;
-    double gain = 0.0;
-    for (k = 0; k < kCount; ++k) {
-      offset += static_cast<double>(w[k]) * image_of_parameter[k];
-      gain += static_cast<double>(w[k]) * image_of_parameter[k] * patch->values_[k];
-    }
-    gain /= variance;
-    for (k = 0; k < kCount; ++k) {
-      image_of_parameter[k] -= static_cast<float>(offset + gain * patch->values_[k]);
-    }
+  for (int a = 0; a < 6; ++a) {
+    auto descent = patch->descent_.col(a);
+    const float offset = w.dot(descent);
+    const float gain = weighted.dot(descent) / static_cast<float>(patch->variance_);
+    descent -= gain * patch->values_ + Values::Constant(offset);
   }
   // 3. Hessian, then the weights go into the descent images once and for all.
+  const Eigen::Matrix<float, kCount, 6> plain = patch->descent_;
+  for (int a = 0; a < 6; ++a) patch->descent_.col(a).array() *= w.array();
   for (int a = 0; a < 6; ++a) {
     for (int b = a; b < 6; ++b) {
-      const auto& da = patch->descent_[static_cast<std::size_t>(a)];
-      const auto& db = patch->descent_[static_cast<std::size_t>(b)];
-      double sum = 0.0;
-      for (k = 0; k < kCount; ++k) sum += static_cast<double>(w[k]) * da[k] * db[k];
-      patch->hessian_(a, b) = sum;
-      patch->hessian_(b, a) = sum;
+      patch->hessian_(a, b) = plain.col(a).dot(patch->descent_.col(b));
+      patch->hessian_(b, a) = patch->hessian_(a, b);
     }
-  }
-  for (auto& image_of_parameter : patch->descent_) {
-    for (k = 0; k < kCount; ++k) image_of_parameter[k] *= w[k];
   }
   return patch;
 }
@@ -162,34 +106,24 @@ PatchAlignment Patch::align(const cv::Mat& image, const Eigen::Vector2d& pixel,
   hessian.topLeftCorner<4, 4>().diagonal().array() += prior;
   const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver(hessian);
   if (solver.info() != Eigen::Success) return result;
-  const auto& w = weights();
+  const Values& w = weights();
   Eigen::Vector4d shape_change = Eigen::Vector4d::Zero();
   Values seen;
   double residual_square = 0.0;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
-    if (!sampleGrid(image, result.pixel, result.warp, kRadius, 1.0, seen.data())) return result;
+    if (!sampleGrid(image, result.pixel, result.warp, kRadius, seen.data())) return result;
     // 1. Gain and offset that best explain the picture by the patch.
-    float mean = 0.0F;
-    for (std::size_t k = 0; k < kCount; ++k) mean += w[k] * seen[k];
-    float cross = 0.0F;
-    float square = 0.0F;
-    for (std::size_t k = 0; k < kCount; ++k) {
-      seen[k] -= mean;
-      cross += w[k] * seen[k] * values_[k];
-      square += w[k] * seen[k] * seen[k];
-    }
+    seen.array() -= w.dot(seen);
+    const Values weighted = w.cwiseProduct(seen);
+    const float cross = weighted.dot(values_);
+    const float square = weighted.dot(seen);
     const double gain = cross / variance_;
     result.correlation = cross / std::sqrt(std::max(square * variance_, 1e-9));
     if (result.correlation < 0.1) return result;
     // 2. One step.
-    const auto inverse_gain = static_cast<float>(1.0 / gain);
-    for (std::size_t k = 0; k < kCount; ++k) seen[k] = seen[k] * inverse_gain - values_[k];
+    seen = seen * static_cast<float>(1.0 / gain) - values_;
     Eigen::Matrix<double, 6, 1> rhs;
-    for (std::size_t a = 0; a < 6; ++a) {
-      float sum = 0.0F;
-      for (std::size_t k = 0; k < kCount; ++k) sum += descent_[a][k] * seen[k];
-      rhs[static_cast<Eigen::Index>(a)] = sum;
-    }
+    for (int a = 0; a < 6; ++a) rhs[a] = descent_.col(a).dot(seen);
     residual_square = std::max(0.0, square / (gain * gain) - variance_);
     rhs.head<4>() -= prior * shape_change;
     const Eigen::Matrix<double, 6, 1> step = solver.solve(rhs);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <memory>
 #include <opencv2/core/mat.hpp>
 
@@ -38,17 +37,10 @@ class Patch {
                                      int max_iterations = 10) const;
 
  private:
-  using Values = std::array<float, kCount>;
-
-  std::array<float, kCount> values_;                  // zero weighted mean
-  std::array<std::array<float, kCount>, 6> descent_;  // weighted, appearance projected out
+  Eigen::Matrix<float, kCount, 1> values_;   // zero weighted mean
+  Eigen::Matrix<float, kCount, 6> descent_;  // weighted, appearance projected out
   Eigen::Matrix<double, 6, 6> hessian_;
   double variance_ = 0.0;  // weighted mean square of values_
 };
-
-/// Bilinear samples of a CV_8UC1 image at pixel + warp * (x, y) for x, y in -radius..radius (times
-/// spacing). False where one of them leaves the image.
-bool sampleGrid(const cv::Mat& image, const Eigen::Vector2d& pixel, const Eigen::Matrix2d& warp,
-                int radius, double spacing, float* out);
 
 }  // namespace parkade
