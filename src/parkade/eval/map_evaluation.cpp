@@ -55,6 +55,20 @@ bool inside(const Eigen::Vector2d& p, const Corners& c) {
   return odd;
 }
 
+// Whether the map knows the ground, or what stands on it, within a cell of both entrance corners.
+bool isInSight(const Corners& corners, const LayeredGrid& grid, const SE2& T_map_truth) {
+  const auto is_known = [&](const Eigen::Vector2d& p) {
+    const Eigen::Vector2i cell = grid.cellOf(T_map_truth * p);
+    for (int dx = -1; dx <= 1; ++dx) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        if (grid.at(GridLayer::kParkingLines, cell + Eigen::Vector2i(dx, dy)).known()) return true;
+      }
+    }
+    return false;
+  };
+  return is_known(corners[0]) && is_known(corners[1]);
+}
+
 // Pairs of map and truth, the best first, each once.
 std::vector<SlotMatch> matchSlots(const std::vector<Corners>& told, const MapTruth& truth,
                                   const MapEvaluationOptions& options) {
@@ -171,9 +185,13 @@ void scoreSlots(const ParkingMap& map, const MapTruth& truth, const Way& way,
   std::vector<double> entrance;
   std::vector<double> all;
   std::vector<SlotMatch> found;
+  const SE2 T_map_truth = result.T_truth_map.inverse();
   for (std::size_t j = 0; j < truth.slots.size(); ++j) {
     if (distanceToWay(entranceOf(truth.slots[j].corners), way) > o.passed_within_m) continue;
     ++score.passed;
+    const bool in_sight = isInSight(truth.slots[j].corners, map.grid, T_map_truth);
+    score.in_sight += in_sight ? 1 : 0;
+    score.found_in_sight += in_sight && of_truth[j] != nullptr ? 1 : 0;
     if (of_truth[j] == nullptr) {
       result.missed.push_back(j);
       continue;
@@ -201,6 +219,7 @@ void scoreSlots(const ParkingMap& map, const MapTruth& truth, const Way& way,
     }
   }
   score.recall = score.passed > 0 ? 1.0 * score.found / score.passed : 0.0;
+  score.recall_in_sight = score.in_sight > 0 ? 1.0 * score.found_in_sight / score.in_sight : 0.0;
   score.precision = score.told > 0 ? 1.0 - 1.0 * score.wrong / score.told : 0.0;
   score.availability = score.found > 0 ? 1.0 * score.availability_right / score.found : 0.0;
   score.entrance_error = describe(entrance);

@@ -50,12 +50,15 @@ struct SlotMatch {
 };
 
 struct SlotScore {
-  int passed = 0;      ///< slots of the truth that were passed near enough
-  int found = 0;       ///< of them
-  int told = 0;        ///< slots of the map there
-  int wrong = 0;       ///< of them, no slot of the truth
-  int duplicates = 0;  ///< of them, the same slot again
+  int passed = 0;          ///< slots of the truth that were passed near enough
+  int found = 0;           ///< of them
+  int told = 0;            ///< slots of the map there
+  int wrong = 0;           ///< of them, no slot of the truth
+  int duplicates = 0;      ///< of them, the same slot again
+  int in_sight = 0;        ///< passed ones of which the map has seen both entrance corners' floor
+  int found_in_sight = 0;  ///< of them
   double recall = 0.0;
+  double recall_in_sight = 0.0;
   double precision = 0.0;
   Statistics entrance_error;  ///< m, of the entrance corners of found slots
   Statistics corner_error;    ///< m, of all four corners

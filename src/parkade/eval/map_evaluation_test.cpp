@@ -194,6 +194,20 @@ TEST(MapEvaluation, OnlyWhatWasPassedIsJudged) {
   EXPECT_EQ(e.slots.told, 3);
 }
 
+TEST(MapEvaluation, SlotsOutOfSightAreCountedApart) {
+  MapTruth truth =
+      rowTruth(5);  // the map has seen the floor to x = 12 m, the last one ends at 12.5
+  ParkingMap map = perfectMap(rowTruth(4), SE2());
+  MapEvaluation e = evaluateMap(map, SE2(), truth);
+  EXPECT_EQ(e.slots.passed, 5);
+  EXPECT_EQ(e.slots.in_sight, 4);
+  EXPECT_EQ(e.slots.recall, 0.8);
+  EXPECT_EQ(e.slots.recall_in_sight, 1.0);
+  map.slots.erase(map.slots.begin());
+  e = evaluateMap(map, SE2(), truth);
+  EXPECT_EQ(e.slots.recall_in_sight, 0.75);
+}
+
 TEST(MapEvaluation, ObjectsOfOtherClassesOrTextsAreWrong) {
   const MapTruth truth = rowTruth(4);
   ParkingMap map = perfectMap(truth, SE2());

@@ -24,6 +24,9 @@ Json slotsJson(const SlotScore& s) {
       {"wrong", s.wrong},
       {"duplicates", s.duplicates},
       {"recall", s.recall},
+      {"in_sight", s.in_sight},
+      {"found_in_sight", s.found_in_sight},
+      {"recall_in_sight", s.recall_in_sight},
       {"precision", s.precision},
       {"entrance_error_m", figuresJson(s.entrance_error)},
       {"corner_error_m", figuresJson(s.corner_error)},
@@ -78,6 +81,8 @@ std::string slotsText(const MapEvaluation& e) {
   const SlotScore& s = e.slots;
   std::string text = fmt::format("slots passed within {:g} m\n", e.options.passed_within_m);
   text += fmt::format("  {:<26} {}\n", "recall", share(s.found, s.passed));
+  text += fmt::format("  {:<26} {}\n", "recall, entrance in sight",
+                      share(s.found_in_sight, s.in_sight));
   text += fmt::format("  {:<26} {}\n", "precision", share(s.told - s.wrong, s.told));
   text += fmt::format("  {:<26} {}\n", "duplicates", s.duplicates);
   text += errors("entrance corners", s.entrance_error);
