@@ -27,7 +27,8 @@ using slot_rows::Row;
 using slot_rows::SlotEvidence;
 using slot_rows::SlotLikelihood;
 
-// Slots that touch others of their row and are shaped otherwise, though seen more rarely.
+// Slots next to others of their row (at most one slot and a pillar between) that are shaped
+// otherwise, though seen more rarely.
 std::vector<bool> findMisfits(const std::vector<MapSlot>& told) {
   std::vector<bool> misfits(told.size(), false);
   for (const Row& row : slot_rows::findRows(told)) {
@@ -35,7 +36,8 @@ std::vector<bool> findMisfits(const std::vector<MapSlot>& told) {
       for (const Member& b : row.members) {
         constexpr double kTouch = 0.8;  // m, a pillar between
         const double apart = std::max(a.begin, b.begin) - std::min(a.end, b.end);
-        if (apart < kTouch && told[a.slot].shape != told[b.slot].shape &&
+        const double slot_between = b.end - b.begin;
+        if (apart < kTouch + slot_between && told[a.slot].shape != told[b.slot].shape &&
             told[a.slot].observations < told[b.slot].observations) {
           misfits[a.slot] = true;
         }

@@ -233,57 +233,6 @@ TEST(RowCompletion, ALonelySlotAlongTheAisleMustBeSeenOften) {
   }
 }
 
-// Few pictures may take a lane's edge for a slot's side, and nothing for the other one.
-TEST(RowCompletion, AFreeSlotSeenRarelyMustShowBothSides) {
-  Garage garage;
-  garage.tell(0, {0, 1, 2});
-  garage.paintTold();
-  MapSlot slot = Garage::slotAt(2, 1);
-  slot.observations = 5;
-  garage.told.push_back(slot);
-  garage.fill(GridLayer::kParkingLines, SemanticClass::kSlotLine,
-              slot.corners[0] - Vector2d(0.05, 0.0), slot.corners[3] + Vector2d(0.05, 0.0));
-  EXPECT_EQ(garage.complete().replaced, std::vector<std::int64_t>{slot.id});
-  {
-    Garage hidden = garage;
-    hidden.park(slot);
-    EXPECT_TRUE(hidden.complete().replaced.empty());
-  }
-  {
-    Garage seen_often = garage;
-    seen_often.told.back().observations = 20;
-    EXPECT_TRUE(seen_often.complete().replaced.empty());
-  }
-  garage.paint(slot);
-  EXPECT_TRUE(garage.complete().replaced.empty());
-}
-
-TEST(RowCompletion, WhereThePaintIsWornABareSideSaysLittle) {
-  Garage garage;
-  garage.tell(0, {0, 1, 2});
-  garage.paintTold();
-  for (double y = 0.0; y < kDepth; y += 1.0) {  // half of every side
-    garage.fill(GridLayer::kParkingLines, SemanticClass::kFloor, {-1.0, y}, {kBay, y + 0.5});
-  }
-  MapSlot slot = Garage::slotAt(2, 1);
-  slot.observations = 5;
-  garage.told.push_back(slot);
-  EXPECT_TRUE(garage.complete().replaced.empty());
-}
-
-TEST(RowCompletion, AFewPicturesDoNotOutweighAnArrow) {
-  Garage garage;
-  garage.tell(0, {0, 1, 2});
-  garage.paintTold();
-  MapSlot slot = Garage::slotAt(2, 1);
-  slot.observations = 5;
-  garage.told.push_back(slot);
-  garage.paint(slot);
-  garage.fill(GridLayer::kRoadMarkers, SemanticClass::kArrow, slot.corners[0] + Vector2d(1.1, 1.0),
-              slot.corners[0] + Vector2d(1.4, 3.0));
-  EXPECT_EQ(garage.complete().replaced, std::vector<std::int64_t>{slot.id});
-}
-
 TEST(RowCompletion, MovesAnEntranceToItsRow) {
   Garage garage;
   garage.tell(0, {0, 1, 2});

@@ -103,7 +103,9 @@ void lookInside(const GridProbe& probe, const Corners& c, double step, SlotEvide
       floor += 1.0;
       if (probe.isSlotLine(p)) evidence.lines_inside += 1.0;
       if (probe.isLaneLine(p)) evidence.lanes_inside += 1.0;
-      if (isForDrivers(probe.at(GridLayer::kRoadMarkers, p))) evidence.markers_inside += 1.0;
+      const SemanticClass marking = probe.at(GridLayer::kRoadMarkers, p);
+      if (isForDrivers(marking)) evidence.markers_inside += 1.0;
+      if (marking == SemanticClass::kPaintedNumber) evidence.number_m2 += step * step;
     }
   }
   if (evidence.seen > 0.0) evidence.vehicle = vehicles / evidence.seen;

@@ -29,7 +29,8 @@ struct SlotEvidence {
   double markers_inside = 0.0;  ///< for who drives: arrows, stop lines, crossings, bumps, limits
   double structure_inside = 0.0;
   double vehicle = 0.0;
-  double seen = 0.0;  ///< of the inside
+  double seen = 0.0;       ///< of the inside
+  double number_m2 = 0.0;  ///< painted number inside, not a share
 };
 
 /// corners: entrance left and right, rear right and left.

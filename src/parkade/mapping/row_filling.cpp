@@ -130,7 +130,8 @@ class GapFiller {
       const Place place = placeAt(begin, begin + pattern_.front);
       const SlotEvidence& e = place.evidence;
       const double log_odds = kPrior + likelihood_.side(forwards ? e.right : e.left) +
-                              likelihood_.entrance(e.entrance) + SlotLikelihood::vehicle(e);
+                              likelihood_.entrance(e.entrance) + SlotLikelihood::vehicle(e) +
+                              likelihood_.number(e);
       if (isDenied(e) || likelihood_.lacksSide(e) || log_odds < options_.min_log_odds) break;
       filling.log_odds += log_odds;
       filling.merit += kPrior + likelihood_.whole(e);
@@ -182,6 +183,7 @@ class GapFiller {
       if (i + 1 == places.size())
         (before_slot ? known : filling.merit) += likelihood_.side(e.right);
       vehicles += SlotLikelihood::vehicle(e);
+      filling.merit += likelihood_.number(e);
       entrance.painted += e.entrance.contrast() * e.entrance.seen_m;
       entrance.seen_m += e.entrance.seen_m;
       filling.slots.push_back(places[i].slot);
@@ -191,7 +193,7 @@ class GapFiller {
     filling.merit += likelihood_.entrance(entrance);
     // Cars that wait or were read too large cover several places at once.
     constexpr double kOneCar = 2.4;
-    filling.merit += after_slot && before_slot ? vehicles : std::min(vehicles, kOneCar);
+    filling.merit += is_enclosed ? vehicles : std::min(vehicles, kOneCar);
     filling.log_odds = prior + filling.merit;
     filling.merit = filling.log_odds + known;
     return filling.log_odds > options_.min_log_odds ? filling : Filling{};

@@ -66,6 +66,10 @@ class Garage {
     fill(GridLayer::kAvailability, SemanticClass::kVehicle, slot.corners[0] + Vector2d(0.3, 0.4),
          slot.corners[2] - Vector2d(0.3, 0.4));
   }
+  void number(const MapSlot& slot) {
+    fill(GridLayer::kRoadMarkers, SemanticClass::kPaintedNumber,
+         slot.corners[0] + Vector2d(1.0, 1.0), slot.corners[0] + Vector2d(1.4, 1.2));
+  }
   void paintTold() {
     for (const MapSlot& slot : told) paint(slot);
   }

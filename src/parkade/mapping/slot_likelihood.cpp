@@ -15,6 +15,11 @@ bool shows(const SlotEvidence::Line& line) {
   return line.contrast() > kShown;
 }
 
+bool showsNumber(const SlotEvidence& evidence) {
+  constexpr double kPaint = 0.02;  // m^2
+  return evidence.number_m2 > kPaint;
+}
+
 }  // namespace
 
 void SlotLikelihood::Lines::add(const SlotEvidence::Line& line) {
@@ -37,6 +42,8 @@ void SlotLikelihood::learn(const SlotEvidence& evidence) {
   sides_.add(evidence.left);
   sides_.add(evidence.right);
   entrances_.add(evidence.entrance);
+  ++slots_;
+  if (showsNumber(evidence)) ++numbered_;
 }
 
 double SlotLikelihood::side(const SlotEvidence::Line& line) const {
@@ -57,17 +64,24 @@ double SlotLikelihood::vehicle(const SlotEvidence& evidence) {
                                     : std::log((1.0 - kOften) / (1.0 - kSeldom));
 }
 
+double SlotLikelihood::number(const SlotEvidence& evidence) const {
+  if (!showsNumber(evidence)) return 0.0;
+  constexpr double kElsewhere = 0.02;  // other places
+  const double usual = (numbered_ + 1.0) / (slots_ + 2.0);
+  return std::max(0.0, std::log(usual / kElsewhere));
+}
+
 double SlotLikelihood::whole(const SlotEvidence& evidence) const {
   return side(evidence.left) + side(evidence.right) + entrance(evidence.entrance) +
-         vehicle(evidence);
+         vehicle(evidence) + number(evidence);
 }
 
 bool SlotLikelihood::lacksSide(const SlotEvidence& evidence) const {
-  constexpr double kWorn = 0.6;    // contrast of sides told, on average
-  constexpr double kSeen = 0.9;    // of the slot
-  constexpr double kEmpty = 0.2;   // covered by vehicles at most
+  constexpr double kWorn = 0.6;     // contrast of sides told, on average
+  constexpr double kSeen = 0.9;     // of the slot
+  constexpr double kEmpty = 0.2;    // covered by vehicles at most
   constexpr double kPlainly = 3.0;  // m of a side in sight
-  if (sides_.contrast < kWorn * sides_.all) return false;
+  if (sides_.contrast < kWorn * sides_.all || showsNumber(evidence)) return false;
   if (evidence.seen < kSeen || evidence.vehicle > kEmpty) return false;
   const auto is_bare = [](const SlotEvidence::Line& line) {
     return line.seen_m > kPlainly && !shows(line);

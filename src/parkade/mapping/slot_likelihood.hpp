@@ -17,10 +17,12 @@ class SlotLikelihood {
   [[nodiscard]] double side(const SlotEvidence::Line& line) const;
   [[nodiscard]] double entrance(const SlotEvidence::Line& line) const;
   [[nodiscard]] static double vehicle(const SlotEvidence& evidence);
+  /// Of a number painted in it; 0 where there is none, cars may hide it.
+  [[nodiscard]] double number(const SlotEvidence& evidence) const;
   /// Of all that there is of a slot alone.
   [[nodiscard]] double whole(const SlotEvidence& evidence) const;
   /// Whether the slot would be free and in plain sight, and one of its sides is bare all the same.
-  /// Never where the paint of the slots told is worn.
+  /// Never where the paint of the slots told is worn, nor where a number is painted in it.
   [[nodiscard]] bool lacksSide(const SlotEvidence& evidence) const;
 
  private:
@@ -33,6 +35,8 @@ class SlotLikelihood {
   };
   Lines sides_;
   Lines entrances_;
+  int slots_ = 0;
+  int numbered_ = 0;
 };
 
 /// Whether the layers deny a slot: markings for who drives, lane lines, other lines or something
