@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -28,17 +30,23 @@ using slot_rows::SlotEvidence;
 using slot_rows::SlotLikelihood;
 
 // Slots next to others of their row (at most one slot and a pillar between) that are shaped
-// otherwise, though seen more rarely.
+// otherwise, as fewer of the row are, though seen more rarely.
 std::vector<bool> findMisfits(const std::vector<MapSlot>& told) {
   std::vector<bool> misfits(told.size(), false);
   for (const Row& row : slot_rows::findRows(told)) {
+    std::map<SlotShape, std::int64_t> looks;
+    for (const Member& member : row.members) {
+      looks[told[member.slot].shape] += told[member.slot].observations;
+    }
     for (const Member& a : row.members) {
       for (const Member& b : row.members) {
         constexpr double kTouch = 0.8;  // m, a pillar between
+        const MapSlot& slot = told[a.slot];
+        const MapSlot& other = told[b.slot];
         const double apart = std::max(a.begin, b.begin) - std::min(a.end, b.end);
         const double slot_between = b.end - b.begin;
-        if (apart < kTouch + slot_between && told[a.slot].shape != told[b.slot].shape &&
-            told[a.slot].observations < told[b.slot].observations) {
+        if (apart < kTouch + slot_between && slot.observations < other.observations &&
+            looks[slot.shape] < looks[other.shape]) {
           misfits[a.slot] = true;
         }
       }
