@@ -9,6 +9,7 @@
 
 #include "parkade/core/check.hpp"
 #include "parkade/core/units.hpp"
+#include "parkade/mapping/column_feet.hpp"
 #include "parkade/pipeline/fused_mapper_impl.hpp"
 
 namespace parkade {
@@ -210,6 +211,7 @@ ParkingMap FusedMapper::map(const std::string& name) const {
   map.name = name;
   map.grid = m.global.grid();
   map.objects = m.objects.objects();
+  trimColumnFeet(map.objects, map.grid);
   map.slots = m.slots.slots(m.last_t_ns, map.objects);
   for (const Impl::Stretch& s : m.stretches) {
     map.nodes.push_back(

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/mapping/column_feet.hpp"
+
+#include <gtest/gtest.h>
+
+namespace parkade {
+namespace {
+
+using Eigen::Vector2d;
+
+void fill(LayeredGrid& grid, SemanticClass c, const Vector2d& min, const Vector2d& max) {
+  for (double x = min.x() + 0.025; x < max.x(); x += 0.05) {
+    for (double y = min.y() + 0.025; y < max.y(); y += 0.05)
+      grid.add(GridLayer::kZoneMarkers, {x, y}, c, 3.0F);
+  }
+}
+
+SemanticClass at(const LayeredGrid& grid, double x, double y) {
+  return grid.at(GridLayer::kZoneMarkers, grid.cellOf({x, y})).semantic_class;
+}
+
+MapObject pillarAt(double x, double y) {
+  MapObject pillar;
+  pillar.semantic_class = SemanticClass::kPillar;
+  pillar.position = {x, y, 0.0};
+  return pillar;
+}
+
+TEST(ColumnFeet, CutsTheShadowBehindAPillar) {
+  LayeredGrid grid;
+  fill(grid, SemanticClass::kPillar, {-0.25, -0.25}, {0.25, 0.25});
+  fill(grid, SemanticClass::kPillar, {-0.1, 0.25}, {0.1, 0.7});
+  fill(grid, SemanticClass::kFloor, {-1.0, -1.0}, {1.0, -0.25});
+  trimColumnFeet({pillarAt(0.02, -0.01)}, grid);
+  for (double x = -0.225; x < 0.25; x += 0.05) {
+    for (double y = -0.225; y < 0.25; y += 0.05)
+      EXPECT_EQ(at(grid, x, y), SemanticClass::kPillar) << x << " " << y;
+  }
+  for (double y = 0.375; y < 0.7; y += 0.05)
+    EXPECT_EQ(at(grid, 0.025, y), SemanticClass::kUnknown) << y;
+  EXPECT_EQ(at(grid, 0.5, -0.5), SemanticClass::kFloor);
+}
+
+TEST(ColumnFeet, LeavesWallsAndWhatIsNoKnownPillarAlone) {
+  LayeredGrid grid;
+  fill(grid, SemanticClass::kWall, {0.3, 0.3}, {0.8, 0.4});
+  fill(grid, SemanticClass::kPillar, {3.0, 0.0}, {3.2, 0.2});
+  trimColumnFeet({pillarAt(0.0, 0.0)}, grid);
+  EXPECT_EQ(at(grid, 0.5, 0.325), SemanticClass::kWall);
+  EXPECT_EQ(at(grid, 3.1, 0.1), SemanticClass::kPillar);
+}
+
+TEST(ColumnFeet, APillarKeepsItsOwnFootBesideAnother) {
+  LayeredGrid grid;
+  for (const double x : {0.0, 0.9})
+    fill(grid, SemanticClass::kPillar, {x - 0.2, -0.2}, {x + 0.2, 0.2});
+  const LayeredGrid before = grid;
+  trimColumnFeet({pillarAt(0.0, 0.0), pillarAt(0.9, 0.0)}, grid);
+  for (double x = -0.175; x < 1.1; x += 0.05) EXPECT_EQ(at(grid, x, 0.025), at(before, x, 0.025));
+}
+
+}  // namespace
+}  // namespace parkade
