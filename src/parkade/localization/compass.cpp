@@ -18,14 +18,7 @@ double wrapQuarter(double angle) {
 
 }  // namespace
 
-std::optional<double> Compass::read(const SemanticFrame& frame, double expected_heading,
-                                    double travelled_m) {
-  if (!options_.enable) return std::nullopt;
-  if (begin_m_ < 0.0) begin_m_ = travelled_m;
-  struct Line {
-    double direction;  // in the vehicle
-    double weight;
-  };
+std::vector<Compass::Line> Compass::linesOf(const SemanticFrame& frame) const {
   std::vector<Line> lines;
   const double paint = options_.paint_sigma_deg * kDegree;
   for (const LineSegment& segment : frame.line_segments) {
@@ -37,21 +30,45 @@ std::optional<double> Compass::read(const SemanticFrame& frame, double expected_
     // Long lines count for their length as well: dashes of one line are not many.
     lines.push_back({std::atan2(along.y(), along.x()), length / std::max(kLeast, variance)});
   }
+  return lines;
+}
+
+// The direction that most lines lie along, if it is most of all: slanted rows have another.
+bool Compass::learnAxis() {
+  constexpr double kMost = 0.6;
+  double all = 0.0;
+  for (const Line& line : seen_) all += line.weight;
+  double best = 0.0;
+  for (const Line& about : seen_) {
+    double offset = 0.0;
+    double weight = 0.0;
+    for (const Line& line : seen_) {
+      const double off = wrapQuarter(line.direction - about.direction);
+      if (std::abs(off) > options_.window_deg * kDegree) continue;
+      offset += line.weight * off;
+      weight += line.weight;
+    }
+    if (weight <= best) continue;
+    best = weight;
+    axis_ = wrapQuarter(about.direction + offset / weight);
+  }
+  seen_.clear();
+  return best > kMost * all;
+}
+
+std::optional<double> Compass::read(const SemanticFrame& frame, double expected_heading,
+                                    double travelled_m) {
+  if (!options_.enable) return std::nullopt;
+  if (begin_m_ < 0.0) begin_m_ = travelled_m;
+  const std::vector<Line> lines = linesOf(frame);
   if (lines.empty()) return std::nullopt;
   if (!learned_ && travelled_m - begin_m_ >= options_.reference_m) {
-    // Lines that agree; slanted rows among them make the sum short.
-    constexpr double kAgree = 0.9;
-    learned_ = weight_sum_ > 0.0 && std::hypot(cos_sum_, sin_sum_) > kAgree * weight_sum_;
-    axis_ = 0.25 * std::atan2(sin_sum_, cos_sum_);
-    cos_sum_ = sin_sum_ = weight_sum_ = 0.0;
+    learned_ = learnAxis();
     begin_m_ = travelled_m;
   }
   if (!learned_) {
     for (const Line& line : lines) {
-      const double angle = 4.0 * (line.direction + expected_heading);
-      cos_sum_ += line.weight * std::cos(angle);
-      sin_sum_ += line.weight * std::sin(angle);
-      weight_sum_ += line.weight;
+      seen_.push_back({line.direction + expected_heading, line.weight});
     }
     return std::nullopt;
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "parkade/core/options.hpp"
 #include "parkade/types/semantic_features.hpp"
@@ -42,7 +43,7 @@ struct CompassOptions {
 
 /// Heading from the garage's axes: painted lines of a garage run along two square directions, which
 /// the first metres of a drive show. Later frames read their heading off them, modulo 90 degrees.
-/// Where lines are slanted, or fit no axis, it says nothing. docs/math/fusion.md.
+/// Slanted lines are left out; where too many are, it says nothing. docs/math/fusion.md.
 class Compass {
  public:
   explicit Compass(const CompassOptions& options) : options_(options) {}
@@ -57,10 +58,13 @@ class Compass {
   bool learned_ = false;
   double begin_m_ = -1.0;
   double axis_ = 0.0;  // world direction, modulo 90 degrees
-  // While learning: sums over lines of exp(4 i direction), weighted.
-  double cos_sum_ = 0.0;
-  double sin_sum_ = 0.0;
-  double weight_sum_ = 0.0;
+  struct Line {
+    double direction = 0.0;  // rad, in the world while learning, else in the vehicle
+    double weight = 0.0;
+  };
+  [[nodiscard]] std::vector<Line> linesOf(const SemanticFrame& frame) const;
+  bool learnAxis();
+  std::vector<Line> seen_;  // while learning
 };
 
 }  // namespace parkade

@@ -45,6 +45,16 @@ TEST(Compass, ReadsTheHeadingOffAxesThatItLearned) {
   EXPECT_NEAR(*found, 0.0, 1e-9);
 }
 
+TEST(Compass, LearnsBesideSlantedRows) {
+  Compass compass({});
+  for (double way = 0.0; way < 10.0; way += 1.0) {
+    EXPECT_FALSE(compass.read(frameOf({20, 60, 110, 60, 20.1, 19.9}, 0.1), 0.1, way));
+  }
+  const auto found = compass.read(frameOf({20, 110, 60}, 0.3), 0.3 + kDegree, 10.0);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(*found, 0.3, 1e-9);
+}
+
 TEST(Compass, DoesNotLearnFromSlantedRowsOrWhenOff) {
   Compass compass({});
   for (double way = 0.0; way < 30.0; way += 1.0) {
