@@ -193,7 +193,9 @@ class GapFiller {
     filling.merit += likelihood_.entrance(entrance);
     // Cars that wait or were read too large cover several places at once.
     constexpr double kOneCar = 2.4;
-    filling.merit += is_enclosed ? vehicles : std::min(vehicles, kOneCar);
+    // Nor do cars tell how wide slots are.
+    const bool each_in_one = (after_slot && before_slot) || (is_enclosed && more == 0.0);
+    filling.merit += each_in_one ? vehicles : std::min(vehicles, kOneCar);
     filling.log_odds = prior + filling.merit;
     filling.merit = filling.log_odds + known;
     return filling.log_odds > options_.min_log_odds ? filling : Filling{};

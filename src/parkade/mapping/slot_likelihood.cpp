@@ -77,7 +77,7 @@ double SlotLikelihood::whole(const SlotEvidence& evidence) const {
 }
 
 bool SlotLikelihood::lacksSide(const SlotEvidence& evidence) const {
-  constexpr double kWorn = 0.6;     // contrast of sides told, on average
+  constexpr double kWorn = 0.8;     // contrast of sides told, on average
   constexpr double kSeen = 0.9;     // of the slot
   constexpr double kEmpty = 0.2;    // covered by vehicles at most
   constexpr double kPlainly = 3.0;  // m of a side in sight
