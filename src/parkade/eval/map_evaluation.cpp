@@ -58,13 +58,9 @@ bool inside(const Eigen::Vector2d& p, const Corners& c) {
 // Whether the map knows the ground, or what stands on it, within a cell of both entrance corners.
 bool isInSight(const Corners& corners, const LayeredGrid& grid, const SE2& T_map_truth) {
   const auto is_known = [&](const Eigen::Vector2d& p) {
-    const Eigen::Vector2i cell = grid.cellOf(T_map_truth * p);
-    for (int dx = -1; dx <= 1; ++dx) {
-      for (int dy = -1; dy <= 1; ++dy) {
-        if (grid.at(GridLayer::kParkingLines, cell + Eigen::Vector2i(dx, dy)).known()) return true;
-      }
-    }
-    return false;
+    return anyWithinACell(grid.cellOf(T_map_truth * p), [&](const Eigen::Vector2i& cell) {
+      return grid.at(GridLayer::kParkingLines, cell).known();
+    });
   };
   return is_known(corners[0]) && is_known(corners[1]);
 }

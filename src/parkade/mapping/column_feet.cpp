@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 namespace parkade {
 namespace {
@@ -16,8 +15,7 @@ using Eigen::Vector2i;
 constexpr double kReach = 1.0;  // m from a pillar's position to what may be its foot
 
 bool isPillarCell(const LayeredGrid& grid, const Vector2i& cell) {
-  const GridCell at = grid.at(GridLayer::kZoneMarkers, cell);
-  return at.semantic_class == SemanticClass::kPillar && at.log_odds > 0;
+  return grid.at(GridLayer::kZoneMarkers, cell).believed() == SemanticClass::kPillar;
 }
 
 // Cells of structure that no other pillar is nearer to.
@@ -45,23 +43,13 @@ std::vector<Vector2i> cellsOf(std::size_t pillar, const std::vector<Vector2d>& p
 // Whether a cell within one of the point across the middle is a pillar's as well.
 bool hasCounterpart(const LayeredGrid& grid, const Vector2i& cell, const Vector2d& middle) {
   const Vector2i across = grid.cellOf(2.0 * middle - grid.centerOf(cell));
-  for (int dx = -1; dx <= 1; ++dx) {
-    for (int dy = -1; dy <= 1; ++dy) {
-      if (isPillarCell(grid, across + Vector2i(dx, dy))) return true;
-    }
-  }
-  return false;
+  return anyWithinACell(across, [&](const Vector2i& near) { return isPillarCell(grid, near); });
 }
 
 }  // namespace
 
 void trimColumnFeet(const std::vector<MapObject>& objects, LayeredGrid& grid) {
-  std::vector<Vector2d> pillars;
-  for (const MapObject& object : objects) {
-    if (object.semantic_class == SemanticClass::kPillar) {
-      pillars.push_back(object.position.head<2>());
-    }
-  }
+  const std::vector<Vector2d> pillars = positionsOf(SemanticClass::kPillar, objects);
   std::vector<Vector2i> behind;
   for (std::size_t i = 0; i < pillars.size(); ++i) {
     for (const Vector2i& cell : cellsOf(i, pillars, grid)) {

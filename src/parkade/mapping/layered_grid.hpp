@@ -23,6 +23,10 @@ struct GridCell {
   SemanticClass semantic_class = SemanticClass::kUnknown;
 
   [[nodiscard]] bool known() const { return semantic_class != SemanticClass::kUnknown; }
+  /// The class, unknown where it is doubted.
+  [[nodiscard]] SemanticClass believed() const {
+    return log_odds > 0 ? semantic_class : SemanticClass::kUnknown;
+  }
   /// Probability of the class, 0.5 where nothing is known.
   [[nodiscard]] double probability() const;
   bool operator==(const GridCell&) const = default;
@@ -108,5 +112,16 @@ class LayeredGrid {
 };
 
 bool operator==(const LayeredGrid& a, const LayeredGrid& b);
+
+/// Whether it holds for a cell or for one of the eight around it.
+template <class Holds>
+bool anyWithinACell(const Eigen::Vector2i& cell, const Holds& holds) {
+  for (int dx = -1; dx <= 1; ++dx) {
+    for (int dy = -1; dy <= 1; ++dy) {
+      if (holds(Eigen::Vector2i(cell + Eigen::Vector2i(dx, dy)))) return true;
+    }
+  }
+  return false;
+}
 
 }  // namespace parkade

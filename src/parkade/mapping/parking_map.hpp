@@ -48,6 +48,16 @@ struct MapObject {
   bool operator==(const MapObject&) const = default;
 };
 
+/// Where the objects of a class stand, over the ground.
+inline std::vector<Eigen::Vector2d> positionsOf(SemanticClass semantic_class,
+                                                const std::vector<MapObject>& objects) {
+  std::vector<Eigen::Vector2d> positions;
+  for (const MapObject& object : objects) {
+    if (object.semantic_class == semantic_class) positions.push_back(object.position.head<2>());
+  }
+  return positions;
+}
+
 struct PoseGraphNode {
   std::int64_t id = 0;
   TimeNs t_ns = 0;

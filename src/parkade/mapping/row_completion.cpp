@@ -220,12 +220,7 @@ class RowCompleter {
 
 RowCompletion completeRows(const std::vector<MapSlot>& told, const std::vector<MapObject>& objects,
                            const LayeredGrid& grid, const RowCompletionOptions& options) {
-  std::vector<Vector2d> pillars;
-  for (const MapObject& object : objects) {
-    if (object.semantic_class == SemanticClass::kPillar) {
-      pillars.push_back(object.position.head<2>());
-    }
-  }
+  const std::vector<Vector2d> pillars = positionsOf(SemanticClass::kPillar, objects);
   return RowCompleter(told, pillars, grid, options).complete();
 }
 

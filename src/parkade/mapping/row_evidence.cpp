@@ -18,8 +18,7 @@ class GridProbe {
 
   // The class that a layer holds at p; unknown where it holds none or doubts it.
   [[nodiscard]] SemanticClass at(GridLayer layer, const Vector2d& p) const {
-    const GridCell cell = grid_.at(layer, grid_.cellOf(p));
-    return cell.log_odds > 0 ? cell.semantic_class : SemanticClass::kUnknown;
+    return grid_.at(layer, grid_.cellOf(p)).believed();
   }
   [[nodiscard]] bool isSlotLine(const Vector2d& p) const {
     return at(GridLayer::kParkingLines, p) == SemanticClass::kSlotLine;

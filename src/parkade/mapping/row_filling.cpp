@@ -28,14 +28,13 @@ class GapFiller {
   // None where they are not likely.
   [[nodiscard]] Filling fill(const Gap& gap) const {
     if (isOpen(gap)) return extend(gap);
-    return weigh(gap, placesOf(fitSlots(gap)), 0.0);
+    return weigh(gap, placesOf(fitSlots(gap)), false);
   }
 
   // The same with wide slots, as for wheelchairs, of which there are few.
   [[nodiscard]] Filling fillWide(const Gap& gap) const {
-    constexpr double kSeldom = -3.0;
     if (isOpen(gap) || pattern_.shape != SlotShape::kPerpendicular) return {};
-    return weigh(gap, placesOf(fitWideSlots(gap)), kSeldom);
+    return weigh(gap, placesOf(fitWideSlots(gap)), true);
   }
 
  private:
@@ -151,8 +150,9 @@ class GapFiller {
   }
 
   // Between two slots there is hardly room for anything else; a bay between two pillars may hold
-  // anything. more: what else the prior log-odds hold.
-  [[nodiscard]] Filling weigh(const Gap& gap, const std::vector<Place>& places, double more) const {
+  // anything; wide slots are seldom.
+  [[nodiscard]] Filling weigh(const Gap& gap, const std::vector<Place>& places,
+                              bool are_wide) const {
     const bool after_slot = gap.at_begin == GapEnd::kSlot;
     const bool before_slot = gap.at_end == GapEnd::kSlot;
     constexpr double kBetween = 3.0;
@@ -160,6 +160,7 @@ class GapFiller {
     constexpr double kAlone = -2.0;
     constexpr double kOtherShape = -1.0;
     constexpr double kNextBay = 1.5;
+    constexpr double kSeldom = -3.0;
     double prior = after_slot && before_slot ? kBetween : kAlone;
     if (after_slot != before_slot) prior = kBeside;
     const bool past_begin = hasSlotBy(gap.begin, true);
@@ -170,7 +171,7 @@ class GapFiller {
     }
     const bool is_enclosed = (after_slot || past_begin) && (before_slot || past_end);
     if (!pattern_.of_row) prior += kOtherShape;
-    prior += more;
+    if (are_wide) prior += kSeldom;
     Filling filling;
     SlotEvidence::Line entrance;
     double known = 0.0;
@@ -194,7 +195,7 @@ class GapFiller {
     // Cars that wait or were read too large cover several places at once.
     constexpr double kOneCar = 2.4;
     // Nor do cars tell how wide slots are.
-    const bool each_in_one = (after_slot && before_slot) || (is_enclosed && more == 0.0);
+    const bool each_in_one = (after_slot && before_slot) || (is_enclosed && !are_wide);
     filling.merit += each_in_one ? vehicles : std::min(vehicles, kOneCar);
     filling.log_odds = prior + filling.merit;
     filling.merit = filling.log_odds + known;

@@ -16,17 +16,21 @@ using testing::expectAt;
 using testing::Garage;
 using testing::kBay;
 using testing::kDepth;
-using testing::kMargin;
-using testing::kWidth;
 
-// Few pictures may take a lane's edge for a slot's side, and nothing for the other one.
-TEST(SlotDoubts, AFreeSlotSeenRarelyMustShowBothSides) {
-  Garage garage;
+// Tells a clear row, and apart from it a slot that few pictures told.
+MapSlot tellOneRarelySeen(Garage& garage) {
   garage.tell(0, {0, 1, 2});
   garage.paintTold();
   MapSlot slot = Garage::slotAt(2, 1);
   slot.observations = 5;
   garage.told.push_back(slot);
+  return slot;
+}
+
+// Few pictures may take a lane's edge for a slot's side, and nothing for the other one.
+TEST(SlotDoubts, AFreeSlotSeenRarelyMustShowBothSides) {
+  Garage garage;
+  const MapSlot slot = tellOneRarelySeen(garage);
   garage.fill(GridLayer::kParkingLines, SemanticClass::kSlotLine,
               slot.corners[0] - Vector2d(0.05, 0.0), slot.corners[3] + Vector2d(0.05, 0.0));
   EXPECT_EQ(garage.complete().replaced, std::vector<std::int64_t>{slot.id});
@@ -46,24 +50,16 @@ TEST(SlotDoubts, AFreeSlotSeenRarelyMustShowBothSides) {
 
 TEST(SlotDoubts, WhereThePaintIsWornABareSideSaysLittle) {
   Garage garage;
-  garage.tell(0, {0, 1, 2});
-  garage.paintTold();
+  tellOneRarelySeen(garage);
   for (double y = 0.0; y < kDepth; y += 1.0) {  // half of every side
     garage.fill(GridLayer::kParkingLines, SemanticClass::kFloor, {-1.0, y}, {kBay, y + 0.5});
   }
-  MapSlot slot = Garage::slotAt(2, 1);
-  slot.observations = 5;
-  garage.told.push_back(slot);
   EXPECT_TRUE(garage.complete().replaced.empty());
 }
 
 TEST(SlotDoubts, AFewPicturesDoNotOutweighAnArrow) {
   Garage garage;
-  garage.tell(0, {0, 1, 2});
-  garage.paintTold();
-  MapSlot slot = Garage::slotAt(2, 1);
-  slot.observations = 5;
-  garage.told.push_back(slot);
+  const MapSlot slot = tellOneRarelySeen(garage);
   garage.paint(slot);
   garage.fill(GridLayer::kRoadMarkers, SemanticClass::kArrow, slot.corners[0] + Vector2d(1.1, 1.0),
               slot.corners[0] + Vector2d(1.4, 3.0));
