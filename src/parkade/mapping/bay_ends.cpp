@@ -180,8 +180,8 @@ class BayEndFinder {
       return std::nullopt;
     }
     constexpr double kPrior = -3.0;  // most columns have known slots beside them, or none
-    double log_odds =
-        kPrior + kStandsOut + likelihood_.entrance(e.entrance) + SlotLikelihood::vehicle(e);
+    double log_odds = kPrior + kStandsOut + likelihood_.entrance(e.entrance) +
+                      SlotLikelihood::vehicle(e) + likelihood_.number(e) + likelihood_.stop(e);
     if (!isSideOfKnown(other))
       log_odds += otherSide(stand.is_right ? e.right : e.left, other, inward);
     if (log_odds < options_.min_log_odds) return std::nullopt;

@@ -75,6 +75,29 @@ TEST(BayEnds, OneSideAloneIsNotEnough) {
   EXPECT_TRUE(garage.complete().added.empty());
 }
 
+TEST(BayEnds, AWheelStopSpeaksForASlot) {
+  TwoRows garage;
+  for (const MapSlot& slot : garage.told) garage.stop(slot);
+  garage.paintSide(kFront - kDepth, kFront);
+  EXPECT_TRUE(garage.complete().added.empty());
+  garage.stop(TwoRows::hidden());
+  EXPECT_EQ(garage.complete().added.size(), 1U);
+}
+
+TEST(BayEnds, ABayIsFilledFromItsEndOn) {
+  TwoRows garage;
+  garage.paintSide(kFront - kDepth, kFront);
+  garage.paintEntrance();
+  MapObject pillar = garage.objects.back();
+  pillar.id = 11;
+  pillar.position.x() = 2.0 * kMargin + 2.0 * kWidth;
+  garage.objects.push_back(pillar);
+  MapSlot second = TwoRows::hidden();
+  for (Vector2d& corner : second.corners) corner.x() += kWidth;
+  garage.park(second);
+  EXPECT_EQ(garage.complete().added.size(), 2U);
+}
+
 TEST(BayEnds, ALineThatGoesOnIsNoSide) {
   TwoRows garage;
   garage.paintSide(kFront - kDepth, kFront + 3.0);

@@ -11,6 +11,7 @@
 
 #include "parkade/mapping/bay_ends.hpp"
 #include "parkade/mapping/map_check.hpp"
+#include "parkade/mapping/reserved_slots.hpp"
 #include "parkade/mapping/row_alignment.hpp"
 #include "parkade/mapping/row_evidence.hpp"
 #include "parkade/mapping/row_filling.hpp"
@@ -88,17 +89,22 @@ class RowCompleter {
         fillings.push_back(std::move(filling));
       }
     }
-    std::stable_sort(fillings.begin(), fillings.end(),
-                     [](const Filling& a, const Filling& b) { return a.log_odds > b.log_odds; });
-    RowCompletion result;
-    for (const Filling& filling : fillings) {
-      if (!takePlace(filling, result.added)) continue;
-      result.added.insert(result.added.end(), filling.slots.begin(), filling.slots.end());
+    for (Filling& filling :
+         slot_rows::findReservedSlots(told_, pillars_, grid_, likelihood_, options_)) {
+      fillings.push_back(std::move(filling));
     }
+    RowCompletion result;
+    takeBest(std::move(fillings), result.added);
     dropLonelySlots(result.added);
     const std::vector<MapSlot> ends =
         slot_rows::findBayEnds(knownWith(result.added), pillars_, grid_, likelihood_, options_);
     result.added.insert(result.added.end(), ends.begin(), ends.end());
+    if (!ends.empty()) {
+      // A bay of which only the end was found has a row from now on.
+      takeBest(
+          slot_rows::findFillings(knownWith(result.added), pillars_, grid_, likelihood_, options_),
+          result.added);
+    }
     result.replaced = replaced_;
     for (std::size_t i = 0; i < told_.size(); ++i) {
       const bool is_new = told_[i].id == 0;
@@ -175,6 +181,16 @@ class RowCompleter {
     constexpr double kFar = 9.0;  // m
     if ((a.corners[0] - b.corners[0]).norm() > kFar) return 0.0;
     return overlapShare(a.corners, b.corners);
+  }
+
+  // The likeliest first.
+  void takeBest(std::vector<Filling> fillings, std::vector<MapSlot>& added) {
+    std::stable_sort(fillings.begin(), fillings.end(),
+                     [](const Filling& a, const Filling& b) { return a.log_odds > b.log_odds; });
+    for (const Filling& filling : fillings) {
+      if (!takePlace(filling, added)) continue;
+      added.insert(added.end(), filling.slots.begin(), filling.slots.end());
+    }
   }
 
   // Whether nothing that is likelier lies where the filling does; what is less likely goes.

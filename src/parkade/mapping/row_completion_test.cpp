@@ -106,6 +106,41 @@ TEST(RowCompletion, BelievesABayBetweenTwoOthersSooner) {
   }
 }
 
+// The rest of a bay, with one parked vehicle and no paint, where the next bay holds slots as well.
+TEST(RowCompletion, BelievesTheRestOfABayBesideAnotherSooner) {
+  for (const bool beside : {true, false}) {
+    Garage garage;
+    garage.tell(0, {0});
+    if (beside) garage.tell(1, {0, 1, 2});
+    garage.paintTold();
+    garage.park(Garage::slotAt(0, 1));
+    EXPECT_EQ(garage.complete().added.size(), beside ? 2U : 0U);
+  }
+}
+
+// Next to a wide slot that stands alone a bay shows its outer lines and vehicles: two wide slots
+// would fit as well.
+TEST(RowCompletion, UsualSlotsAreMoreLikelyThanWideOnes) {
+  Garage garage;
+  MapSlot wide = Garage::slotAt(0, 2);
+  for (const std::size_t k : {0U, 3U}) wide.corners[k].x() -= 0.5 * kWidth;
+  garage.told.push_back(wide);
+  garage.tell(3, {0, 1, 2});
+  garage.paintTold();
+  const double left = kBay + kMargin;
+  const double right = 2.0 * kBay - kMargin;
+  for (const double x : {left, right}) {
+    garage.fill(GridLayer::kParkingLines, SemanticClass::kSlotLine, {x - 0.05, 0.0},
+                {x + 0.05, kDepth});
+  }
+  for (int place = 0; place < 3; ++place) garage.park(Garage::slotAt(1, place));
+  const RowCompletion rows = garage.complete();
+  ASSERT_EQ(rows.added.size(), 3U);
+  for (int place = 0; place < 3; ++place) {
+    expectAt(rows.added[static_cast<std::size_t>(place)], Garage::slotAt(1, place));
+  }
+}
+
 TEST(RowCompletion, LeavesPlacesWithMarkingsForWhoDrivesAlone) {
   Garage garage;
   garage.tell(0, {0, 2});

@@ -3,6 +3,7 @@
 #include "parkade/mapping/row_evidence.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "parkade/mapping/slot_plausibility.hpp"
 
@@ -90,6 +91,7 @@ void lookInside(const GridProbe& probe, const Corners& c, double step, SlotEvide
   double all = 0.0;
   double floor = 0.0;
   double vehicles = 0.0;
+  double number_aside = 0.0;
   for (double a = kBorder; a < width - kBorder; a += step) {
     for (double b = kBorder; b < depth - kBorder; b += step) {
       const Vector2d p = c[0] + a / width * (c[1] - c[0]) + b / depth * (c[3] - c[0]);
@@ -104,8 +106,14 @@ void lookInside(const GridProbe& probe, const Corners& c, double step, SlotEvide
       if (probe.isLaneLine(p)) evidence.lanes_inside += 1.0;
       const SemanticClass marking = probe.at(GridLayer::kRoadMarkers, p);
       if (isForDrivers(marking)) evidence.markers_inside += 1.0;
-      if (marking == SemanticClass::kPaintedNumber) evidence.number_m2 += step * step;
+      if (marking == SemanticClass::kWheelStop) evidence.stop_m2 += step * step;
+      if (marking != SemanticClass::kPaintedNumber) continue;
+      evidence.number_m2 += step * step;
+      number_aside += (a / width - 0.5) * step * step;
     }
+  }
+  if (evidence.number_m2 > 0.0) {
+    evidence.number_aside = std::abs(number_aside) / evidence.number_m2;
   }
   if (evidence.seen > 0.0) evidence.vehicle = vehicles / evidence.seen;
   if (all > 0.0) {

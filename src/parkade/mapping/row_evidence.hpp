@@ -29,8 +29,10 @@ struct SlotEvidence {
   double markers_inside = 0.0;  ///< for who drives: arrows, stop lines, crossings, bumps, limits
   double structure_inside = 0.0;
   double vehicle = 0.0;
-  double seen = 0.0;       ///< of the inside
-  double number_m2 = 0.0;  ///< painted number inside, not a share
+  double seen = 0.0;          ///< of the inside
+  double number_m2 = 0.0;     ///< painted number inside, not a share
+  double stop_m2 = 0.0;       ///< wheel stop inside, not a share
+  double number_aside = 0.0;  ///< how far from the middle between the sides, of the width
 };
 
 /// corners: entrance left and right, rear right and left.

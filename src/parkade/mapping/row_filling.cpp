@@ -28,7 +28,7 @@ class GapFiller {
   // None where they are not likely.
   [[nodiscard]] Filling fill(const Gap& gap) const {
     if (isOpen(gap)) return extend(gap);
-    return weigh(gap, placesOf(fitSlots(gap)), false);
+    return weigh(gap, placesOf(fitSlots(gap)), pattern_.is_wide);
   }
 
   // The same with wide slots, as for wheelchairs, of which there are few.
@@ -82,16 +82,14 @@ class GapFiller {
   // The same of slots as wide as such ones are: the margins that were seen most often, and all
   // that is left between them.
   [[nodiscard]] Fit fitWideSlots(const Gap& gap) const {
-    constexpr double kLeastFront = 3.2;  // m; 3.5 m by DIN 18040-1
-    constexpr double kMostFront = 4.0;
     const auto [before, after] = marginsOf(gap);
     Fit best;
     for (const Margin& b : before) {
       for (const Margin& a : after) {
         const double rest = gap.end - gap.begin - b.length - a.length;
-        const int count = std::max(1, static_cast<int>(rest / kLeastFront));
+        const int count = std::max(1, static_cast<int>(rest / kLeastWideFront));
         const double front = rest / count;
-        if (front < kLeastFront || front > kMostFront) continue;
+        if (front < kLeastWideFront || front > kMostWideFront) continue;
         const double merit = b.seen + a.seen;
         if (best.count > 0 && merit <= best.merit) continue;
         best = {count, gap.begin + b.length, front, merit};
@@ -130,7 +128,7 @@ class GapFiller {
       const SlotEvidence& e = place.evidence;
       const double log_odds = kPrior + likelihood_.side(forwards ? e.right : e.left) +
                               likelihood_.entrance(e.entrance) + SlotLikelihood::vehicle(e) +
-                              likelihood_.number(e);
+                              likelihood_.number(e) + likelihood_.stop(e);
       if (isDenied(e) || likelihood_.lacksSide(e) || log_odds < options_.min_log_odds) break;
       filling.log_odds += log_odds;
       filling.merit += kPrior + likelihood_.whole(e);
@@ -165,10 +163,8 @@ class GapFiller {
     if (after_slot != before_slot) prior = kBeside;
     const bool past_begin = hasSlotBy(gap.begin, true);
     const bool past_end = hasSlotBy(gap.end, false);
-    if (!after_slot && !before_slot) {
-      prior += kNextBay * (past_begin ? 1.0 : 0.0);
-      prior += kNextBay * (past_end ? 1.0 : 0.0);
-    }
+    if (!after_slot) prior += kNextBay * (past_begin ? 1.0 : 0.0);
+    if (!before_slot) prior += kNextBay * (past_end ? 1.0 : 0.0);
     const bool is_enclosed = (after_slot || past_begin) && (before_slot || past_end);
     if (!pattern_.of_row) prior += kOtherShape;
     if (are_wide) prior += kSeldom;
@@ -184,7 +180,7 @@ class GapFiller {
       if (i + 1 == places.size())
         (before_slot ? known : filling.merit) += likelihood_.side(e.right);
       vehicles += SlotLikelihood::vehicle(e);
-      filling.merit += likelihood_.number(e);
+      filling.merit += likelihood_.number(e) + likelihood_.stop(e);
       entrance.painted += e.entrance.contrast() * e.entrance.seen_m;
       entrance.seen_m += e.entrance.seen_m;
       filling.slots.push_back(places[i].slot);

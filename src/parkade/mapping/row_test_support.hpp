@@ -63,12 +63,27 @@ class Garage {
     }
   }
   void park(const MapSlot& slot) {
-    fill(GridLayer::kAvailability, SemanticClass::kVehicle, slot.corners[0] + Vector2d(0.3, 0.4),
-         slot.corners[2] - Vector2d(0.3, 0.4));
+    const Vector2d inset(0.3, 0.4);
+    fill(GridLayer::kAvailability, SemanticClass::kVehicle,
+         slot.corners[0].cwiseMin(slot.corners[2]) + inset,
+         slot.corners[0].cwiseMax(slot.corners[2]) - inset);
   }
   void number(const MapSlot& slot) {
     fill(GridLayer::kRoadMarkers, SemanticClass::kPaintedNumber,
          slot.corners[0] + Vector2d(1.0, 1.0), slot.corners[0] + Vector2d(1.4, 1.2));
+  }
+  void stop(const MapSlot& slot) {
+    const Vector2d at = slot.corners[0] + 0.85 * (slot.corners[3] - slot.corners[0]);
+    const Vector2d across = slot.corners[1] - slot.corners[0];
+    const Vector2d a = at + 0.2 * across;
+    const Vector2d b = at + 0.8 * across;
+    fill(GridLayer::kRoadMarkers, SemanticClass::kWheelStop, a.cwiseMin(b) - Vector2d(0.0, 0.08),
+         a.cwiseMax(b) + Vector2d(0.0, 0.08));
+  }
+  // A square sign about the middle of a slot.
+  void sign(const Vector2d& middle) {
+    fill(GridLayer::kRoadMarkers, SemanticClass::kPaintedNumber, middle - Vector2d(0.75, 0.75),
+         middle + Vector2d(0.75, 0.75));
   }
   void paintTold() {
     for (const MapSlot& slot : told) paint(slot);

@@ -20,6 +20,17 @@ bool showsNumber(const SlotEvidence& evidence) {
   return evidence.number_m2 > kPaint;
 }
 
+bool showsStop(const SlotEvidence& evidence) {
+  constexpr double kArea = 0.03;  // m^2
+  return evidence.stop_m2 > kArea;
+}
+
+// Of what few places but slots show.
+double logOddsOf(int showing, int slots) {
+  constexpr double kElsewhere = 0.02;
+  return std::max(0.0, std::log((showing + 1.0) / (slots + 2.0) / kElsewhere));
+}
+
 }  // namespace
 
 void SlotLikelihood::Lines::add(const SlotEvidence::Line& line) {
@@ -44,6 +55,7 @@ void SlotLikelihood::learn(const SlotEvidence& evidence) {
   entrances_.add(evidence.entrance);
   ++slots_;
   if (showsNumber(evidence)) ++numbered_;
+  if (showsStop(evidence)) ++with_stop_;
 }
 
 double SlotLikelihood::side(const SlotEvidence::Line& line) const {
@@ -65,15 +77,16 @@ double SlotLikelihood::vehicle(const SlotEvidence& evidence) {
 }
 
 double SlotLikelihood::number(const SlotEvidence& evidence) const {
-  if (!showsNumber(evidence)) return 0.0;
-  constexpr double kElsewhere = 0.02;  // other places
-  const double usual = (numbered_ + 1.0) / (slots_ + 2.0);
-  return std::max(0.0, std::log(usual / kElsewhere));
+  return showsNumber(evidence) ? logOddsOf(numbered_, slots_) : 0.0;
+}
+
+double SlotLikelihood::stop(const SlotEvidence& evidence) const {
+  return showsStop(evidence) ? logOddsOf(with_stop_, slots_) : 0.0;
 }
 
 double SlotLikelihood::whole(const SlotEvidence& evidence) const {
   return side(evidence.left) + side(evidence.right) + entrance(evidence.entrance) +
-         vehicle(evidence) + number(evidence);
+         vehicle(evidence) + number(evidence) + stop(evidence);
 }
 
 bool SlotLikelihood::lacksSide(const SlotEvidence& evidence) const {
@@ -81,7 +94,8 @@ bool SlotLikelihood::lacksSide(const SlotEvidence& evidence) const {
   constexpr double kSeen = 0.9;     // of the slot
   constexpr double kEmpty = 0.2;    // covered by vehicles at most
   constexpr double kPlainly = 3.0;  // m of a side in sight
-  if (sides_.contrast < kWorn * sides_.all || showsNumber(evidence)) return false;
+  if (sides_.contrast < kWorn * sides_.all) return false;
+  if (showsNumber(evidence) || showsStop(evidence)) return false;
   if (evidence.seen < kSeen || evidence.vehicle > kEmpty) return false;
   const auto is_bare = [](const SlotEvidence::Line& line) {
     return line.seen_m > kPlainly && !shows(line);
@@ -96,6 +110,9 @@ bool isDenied(const SlotEvidence& evidence) {
   constexpr double kStructure = 0.08;
   constexpr double kLaneAhead = 0.6;
   constexpr double kDivider = 0.7;
+  constexpr double kSign = 0.6;  // m^2, larger than numbers
+  constexpr double kAside = 0.15;
+  if (evidence.number_m2 > kSign && evidence.number_aside > kAside) return true;
   return evidence.markers_inside > kMarkers || evidence.lanes_inside > kLanes ||
          evidence.lines_inside > kLines || evidence.structure_inside > kStructure ||
          evidence.lane_ahead > kLaneAhead || evidence.divider > kDivider;

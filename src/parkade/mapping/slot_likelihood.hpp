@@ -19,10 +19,12 @@ class SlotLikelihood {
   [[nodiscard]] static double vehicle(const SlotEvidence& evidence);
   /// Of a number painted in it; 0 where there is none, cars may hide it.
   [[nodiscard]] double number(const SlotEvidence& evidence) const;
+  /// Of a wheel stop in it, likewise.
+  [[nodiscard]] double stop(const SlotEvidence& evidence) const;
   /// Of all that there is of a slot alone.
   [[nodiscard]] double whole(const SlotEvidence& evidence) const;
   /// Whether the slot would be free and in plain sight, and one of its sides is bare all the same.
-  /// Never where the paint of the slots told is worn, nor where a number is painted in it.
+  /// Never where the paint of the slots told is worn, nor where a number or a wheel stop is in it.
   [[nodiscard]] bool lacksSide(const SlotEvidence& evidence) const;
 
  private:
@@ -37,10 +39,11 @@ class SlotLikelihood {
   Lines entrances_;
   int slots_ = 0;
   int numbered_ = 0;
+  int with_stop_ = 0;
 };
 
-/// Whether the layers deny a slot: markings for who drives, lane lines, other lines or something
-/// that stands in it.
+/// Whether the layers deny a slot: markings for who drives, lane lines, other lines, a sign
+/// that is not in its middle or something that stands in it.
 bool isDenied(const SlotEvidence& evidence);
 
 /// Free or occupied, by the vehicles that the layers show in it; untouched where too little is

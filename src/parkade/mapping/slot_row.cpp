@@ -81,15 +81,6 @@ bool isWithin(const Row& row, double s) {
                      [&](const Member& m) { return s > m.begin + kInside && s < m.end - kInside; });
 }
 
-// Whether a pillar stands in a row's depth, or a little in front.
-bool standsIn(const Row& row, const Pattern& pattern, const Vector2d& p) {
-  constexpr double kAhead = 0.6;  // m
-  const double deep = cross(row.u, p - row.origin);
-  const double depth = cross(row.u, pattern.side);
-  const double share = deep / depth;  // the same sign, whichever side the slots lie on
-  return share > -kAhead / std::abs(depth) && share < 1.0;
-}
-
 struct Margins {
   std::vector<double> before;
   std::vector<double> after;
@@ -182,6 +173,7 @@ int countOf(const Row& row, SlotShape shape, const std::vector<MapSlot>& slots) 
 // Those of the row's own shapes, most members first, then those of others; no margins yet.
 std::vector<Pattern> patternsOf(const Row& row, const std::vector<Row>& rows,
                                 const std::vector<MapSlot>& slots) {
+  constexpr double kWider = 0.6;  // m
   std::vector<Pattern> patterns;
   for (const SlotShape shape : kShapes) {
     if (countOf(row, shape, slots) > 0) patterns.push_back(patternOf(row, shape, slots));
@@ -189,6 +181,15 @@ std::vector<Pattern> patternsOf(const Row& row, const std::vector<Row>& rows,
   std::stable_sort(patterns.begin(), patterns.end(), [&](const Pattern& a, const Pattern& b) {
     return countOf(row, a.shape, slots) > countOf(row, b.shape, slots);
   });
+  // A row of which only wide slots were seen may hold usual ones all the same.
+  const auto of_wide = std::find_if(patterns.begin(), patterns.end(), [](const Pattern& pattern) {
+    return pattern.shape == SlotShape::kPerpendicular;
+  });
+  if (of_wide != patterns.end()) {
+    const Pattern usual = patternOfOthers(row, SlotShape::kPerpendicular, rows, slots);
+    of_wide->is_wide = of_wide->front > usual.front + kWider;
+    if (of_wide->is_wide) patterns.push_back(usual);
+  }
   for (const SlotShape shape : {SlotShape::kPerpendicular, SlotShape::kParallel}) {
     const bool elsewhere = std::any_of(rows.begin(), rows.end(), [&](const Row& other) {
       return countOf(other, shape, slots) > 0;
@@ -258,6 +259,14 @@ MapSlot unseenSlot(const Pattern& pattern, const Vector2d& left, const Vector2d&
   slot.last_seen_ns = near.last_seen_ns;
   slot.corner_sigma = std::max(sigma, near.corner_sigma);
   return slot;
+}
+
+bool standsIn(const Row& row, const Pattern& pattern, const Vector2d& p) {
+  constexpr double kAhead = 0.6;  // m
+  const double deep = cross(row.u, p - row.origin);
+  const double depth = cross(row.u, pattern.side);
+  const double share = deep / depth;  // the same sign, whichever side the slots lie on
+  return share > -kAhead / std::abs(depth) && share < 1.0;
 }
 
 double alongRow(const Row& row, const Pattern& pattern, const Vector2d& p) {

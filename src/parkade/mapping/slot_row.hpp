@@ -13,6 +13,10 @@
 
 namespace parkade::slot_rows {
 
+/// m, of wide slots, as for wheelchairs: 3.5 by DIN 18040-1.
+inline constexpr double kLeastWideFront = 3.2;
+inline constexpr double kMostWideFront = 4.0;
+
 /// A slot in its row: where its entrance begins and ends along it.
 struct Member {
   std::size_t slot = 0;  ///< index among the slots
@@ -46,6 +50,7 @@ struct Pattern {
   double front = 0.0;                              ///< m between entrance corners
   Eigen::Vector2d side = Eigen::Vector2d::Zero();  ///< from an entrance corner to the rear one
   bool of_row = true;                              ///< or of other rows of the garage
+  bool is_wide = false;                            ///< much wider than the garage's others
   /// m from a pillar's middle to the slot that begins after it, and from a slot's end to the pillar
   /// after it. Where slots are slanted they differ.
   std::vector<Margin> before;
@@ -59,6 +64,9 @@ MapSlot unseenSlot(const Pattern& pattern, const Eigen::Vector2d& left,
 
 /// Where p lies along the row, seen along the sides of its slots.
 double alongRow(const Row& row, const Pattern& pattern, const Eigen::Vector2d& p);
+
+/// Whether a pillar stands in a row's depth, or a little in front.
+bool standsIn(const Row& row, const Pattern& pattern, const Eigen::Vector2d& p);
 
 enum class GapEnd : std::uint8_t { kSlot, kPillar, kOpen };
 
