@@ -8,8 +8,11 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
+#include <utility>
 
 #include "parkade/io/file.hpp"
+#include "parkade/io/jpeg.hpp"
 
 namespace parkade {
 namespace {
@@ -83,6 +86,13 @@ Result<std::string> readImageBytes(const std::string& path) {
 // A PNG in colour is turned gray here: decoding it twice for both would take as long again.
 Result<cv::Mat> decode(const std::string& bytes, const std::string& path, bool gray) {
   const bool png = isPng(bytes);
+  if (!png) {
+    Result<std::optional<cv::Mat>> image = decodeJpeg(bytes, gray);
+    if (!image) {
+      return at(path, fmt::format("the picture cannot be decoded: {}", image.error().message));
+    }
+    if (*image) return std::move(**image);
+  }
   const int channels = gray ? (png ? cv::IMREAD_ANYCOLOR : cv::IMREAD_GRAYSCALE) : cv::IMREAD_COLOR;
   try {
     // A header over the bytes; imdecode only reads them.

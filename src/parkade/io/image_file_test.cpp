@@ -6,7 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <vector>
 
+#include "parkade/io/jpeg.hpp"
 #include "parkade/io/test_support.hpp"
 
 namespace parkade {
@@ -58,6 +62,34 @@ TEST(ImageFile, GrayBesideColourIsTheGrayReadAlone) {
     }
   }
   EXPECT_THAT(readImageAndGray(folder.write("b", "GIF89a")).error().message, HasSubstr("neither"));
+}
+
+// Recordings give the same bytes whichever reader decodes them.
+TEST(ImageFile, JpegIsDecodedAsOpenCvDoes) {
+  cv::Mat smooth;
+  cv::resize(noise(CV_8UC3), smooth, {99, 131}, 0.0, 0.0, cv::INTER_CUBIC);
+  for (const cv::Mat& image : {noise(CV_8UC3), noise(CV_8UC1), smooth}) {
+    const std::string bytes = *encodeImage(image, {});
+    const std::vector<char> raw(bytes.begin(), bytes.end());
+    for (const bool gray : {false, true}) {
+      const auto decoded = decodeJpeg(bytes, gray);
+      ASSERT_TRUE(decoded.ok()) << decoded.error().message;
+      ASSERT_TRUE(decoded->has_value());
+      const cv::Mat expected = cv::imdecode(raw, gray ? cv::IMREAD_GRAYSCALE : cv::IMREAD_COLOR);
+      ASSERT_EQ((*decoded)->type(), expected.type());
+      EXPECT_EQ(cv::norm(**decoded, expected, cv::NORM_INF), 0.0) << gray;
+    }
+  }
+}
+
+TEST(ImageFile, TellsWhatIsWrongWithADamagedJpeg) {
+  const TemporaryFolder folder;
+  std::string bytes = *encodeImage(noise(CV_8UC3), {});
+  const std::size_t frame = bytes.find("\xFF\xC0");
+  ASSERT_NE(frame, std::string::npos);
+  bytes[frame + 4] = 77;  // bits of a sample
+  EXPECT_THAT(readImage(folder.write("a.jpg", bytes), false).error().message,
+              AllOf(HasSubstr("a.jpg: the picture cannot be decoded"), HasSubstr("77")));
 }
 
 TEST(ImageFile, FindsEveryCutOffFile) {
