@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
+
+#include "parkade/core/median.hpp"
 
 namespace parkade {
 namespace {
@@ -46,6 +49,31 @@ bool hasCounterpart(const LayeredGrid& grid, const Vector2i& cell, const Vector2
   return anyWithinACell(across, [&](const Vector2i& near) { return isPillarCell(grid, near); });
 }
 
+// A disc of pillar, but where walls stand, if at least half of it is known.
+void stampFoot(const Vector2d& middle, double radius, LayeredGrid& grid) {
+  constexpr float kLogOdds = 1.0F;  // against what was seen there
+  const Vector2i at = grid.cellOf(middle);
+  const int reach = static_cast<int>(std::ceil(radius / grid.resolution()));
+  std::vector<Vector2i> foot;
+  std::size_t known = 0;
+  for (int dx = -reach; dx <= reach; ++dx) {
+    for (int dy = -reach; dy <= reach; ++dy) {
+      const Vector2i cell = at + Vector2i(dx, dy);
+      if ((grid.centerOf(cell) - middle).norm() > radius) continue;
+      foot.push_back(cell);
+      if (grid.at(GridLayer::kZoneMarkers, cell).known()) ++known;
+    }
+  }
+  if (2 * known < foot.size()) return;
+  for (const Vector2i& cell : foot) {
+    const SemanticClass c = grid.at(GridLayer::kZoneMarkers, cell).believed();
+    if (c == SemanticClass::kWall || c == SemanticClass::kPillar) continue;
+    GridCell& changed = grid.touch(GridLayer::kZoneMarkers, cell);
+    changed = GridCell();
+    addEvidence(changed, SemanticClass::kPillar, kLogOdds);
+  }
+}
+
 }  // namespace
 
 void trimColumnFeet(const std::vector<MapObject>& objects, LayeredGrid& grid) {
@@ -57,6 +85,26 @@ void trimColumnFeet(const std::vector<MapObject>& objects, LayeredGrid& grid) {
     }
   }
   for (const Vector2i& cell : behind) grid.touch(GridLayer::kZoneMarkers, cell) = GridCell();
+}
+
+void completeColumnFeet(const std::vector<MapObject>& objects, LayeredGrid& grid) {
+  constexpr std::size_t kFewest = 3;  // feet to learn from
+  constexpr double kLeast = 0.04;     // m^2, of a foot that was seen
+  constexpr double kMost = 1.0;
+  constexpr double kLittle = 0.6;  // of the usual foot's area
+  const std::vector<Vector2d> pillars = positionsOf(SemanticClass::kPillar, objects);
+  const double cell = grid.resolution() * grid.resolution();
+  std::vector<double> areas;
+  std::vector<double> seen;
+  for (std::size_t i = 0; i < pillars.size(); ++i) {
+    areas.push_back(cell * static_cast<double>(cellsOf(i, pillars, grid).size()));
+    if (areas.back() > kLeast && areas.back() < kMost) seen.push_back(areas.back());
+  }
+  if (seen.size() < kFewest) return;
+  const double usual = median(std::move(seen));
+  for (std::size_t i = 0; i < pillars.size(); ++i) {
+    if (areas[i] < kLittle * usual) stampFoot(pillars[i], std::sqrt(usual / M_PI), grid);
+  }
 }
 
 }  // namespace parkade

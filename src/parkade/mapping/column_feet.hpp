@@ -15,4 +15,11 @@ namespace parkade {
 /// objects, and walls, are left alone. docs/math/grid.md.
 void trimColumnFeet(const std::vector<MapObject>& objects, LayeredGrid& grid);
 
+/// Gives feet to pillars that the cameras' own pictures show and the bird's-eye pictures hardly do:
+/// columns of a garage are alike, so where a pillar among the objects has less than 0.6 of the
+/// usual foot's area around it (the median of those seen, three at least), a disc of that area is
+/// pillar. Only where half of it is known: what was never in sight is not told. After
+/// trimColumnFeet(). docs/math/grid.md.
+void completeColumnFeet(const std::vector<MapObject>& objects, LayeredGrid& grid);
+
 }  // namespace parkade

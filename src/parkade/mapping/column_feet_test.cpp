@@ -60,5 +60,35 @@ TEST(ColumnFeet, APillarKeepsItsOwnFootBesideAnother) {
   for (double x = -0.175; x < 1.1; x += 0.05) EXPECT_EQ(at(grid, x, 0.025), at(before, x, 0.025));
 }
 
+// Four columns, of one of which the pictures from above show floor or nothing at all.
+TEST(ColumnFeet, APillarWithoutAFootGetsTheUsualOne) {
+  for (const bool was_in_sight : {true, false}) {
+    LayeredGrid grid;
+    if (was_in_sight) fill(grid, SemanticClass::kFloor, {8.0, -1.0}, {9.1, 1.0});
+    fill(grid, SemanticClass::kWall, {9.1, -1.0}, {9.2, 1.0});
+    std::vector<MapObject> pillars;
+    for (const double x : {0.0, 3.0, 6.0, 9.0}) {
+      if (x < 9.0) fill(grid, SemanticClass::kPillar, {x - 0.2, -0.2}, {x + 0.2, 0.2});
+      pillars.push_back(pillarAt(x, 0.0));
+    }
+    completeColumnFeet(pillars, grid);
+    const SemanticClass expected = was_in_sight ? SemanticClass::kPillar : SemanticClass::kUnknown;
+    EXPECT_EQ(at(grid, 9.02, 0.02), expected);
+    EXPECT_EQ(at(grid, 8.87, 0.12), expected);
+    EXPECT_EQ(at(grid, 9.12, 0.02), SemanticClass::kWall);
+    EXPECT_EQ(at(grid, 8.72, 0.02), was_in_sight ? SemanticClass::kFloor : SemanticClass::kUnknown);
+    EXPECT_EQ(at(grid, 0.27, 0.02), SemanticClass::kUnknown);
+  }
+}
+
+TEST(ColumnFeet, TheUsualFootIsLearnedFromThree) {
+  LayeredGrid grid;
+  fill(grid, SemanticClass::kFloor, {-1.0, -1.0}, {10.0, 1.0});
+  fill(grid, SemanticClass::kPillar, {2.8, -0.2}, {3.2, 0.2});
+  const LayeredGrid before = grid;
+  completeColumnFeet({pillarAt(0.0, 0.0), pillarAt(3.0, 0.0), pillarAt(6.0, 0.0)}, grid);
+  EXPECT_TRUE(grid == before);
+}
+
 }  // namespace
 }  // namespace parkade

@@ -212,6 +212,7 @@ ParkingMap FusedMapper::map(const std::string& name) const {
   map.grid = m.global.grid();
   map.objects = m.objects.objects();
   trimColumnFeet(map.objects, map.grid);
+  completeColumnFeet(map.objects, map.grid);
   map.slots = m.slots.slots(m.last_t_ns, map.objects);
   for (const Impl::Stretch& s : m.stretches) {
     map.nodes.push_back(

@@ -17,8 +17,10 @@ struct Sight {
   float structure = 0.0F;   // m of it, as far as blocked: since it was first met
   float vehicle = 0.0F;     // m
   float wheel_stop = 0.0F;  // m
+  float wall = 0.0F;        // m
   bool blocked = false;     // by structure, for good: nothing on the ground is seen behind
   bool behind_car = false;
+  bool behind_wall = false;
 };
 
 bool isStructure(SemanticClass c) {
@@ -26,8 +28,9 @@ bool isStructure(SemanticClass c) {
          c == SemanticClass::kZoneMarker;
 }
 
-// Goes on by a pixel of class c. least: m of something upright that block the sight.
-void goOn(Sight& sight, SemanticClass c, float length, float least) {
+// Goes on by a pixel of class c. least: m of something upright that block the sight, wall_least: m
+// of wall that hide all the ground.
+void goOn(Sight& sight, SemanticClass c, float length, float least, float wall_least) {
   if (c == SemanticClass::kVehicle) {
     sight.vehicle += length;
     sight.behind_car = sight.behind_car || (!sight.blocked && sight.vehicle >= least);
@@ -40,14 +43,17 @@ void goOn(Sight& sight, SemanticClass c, float length, float least) {
   } else {
     sight.structure = 0.0F;
   }
+  sight.behind_wall = sight.behind_wall || sight.wall >= wall_least;
+  sight.wall = c == SemanticClass::kWall ? sight.wall + length : 0.0F;
   sight.wheel_stop = c == SemanticClass::kWheelStop ? sight.wheel_stop + length : 0.0F;
 }
 
 std::uint8_t smearOf(const Sight& sight, SemanticClass c, const SmearOptions& options) {
   if (c == SemanticClass::kWheelStop) {
-    return sight.wheel_stop > options.wheel_stop_depth_m ? SemanticFrame::kSmear : 0;
+    const bool is_smear = sight.behind_wall || sight.wheel_stop > options.wheel_stop_depth_m;
+    return is_smear ? SemanticFrame::kSmear : 0;
   }
-  if (!isStructure(c)) return 0;
+  if (!isStructure(c)) return sight.behind_wall ? SemanticFrame::kSmear : 0;
   const bool wall = c == SemanticClass::kWall;
   const double depth = wall ? options.wall_depth_m : options.pillar_depth_m;
   if (sight.behind_car || sight.structure > depth) return SemanticFrame::kSmear;
@@ -95,6 +101,7 @@ cv::Mat SmearFinder::find(const BevLabels& labels) const {
   std::vector<Sight> sights(labels.labels.total());
   cv::Mat smear(labels.labels.size(), CV_8UC1, cv::Scalar(0));
   const auto least = static_cast<float>(options_.least_m);
+  const auto wall_least = static_cast<float>(options_.wall_least_m);
   // Where cameras' parts of the picture meet, a pixel may come before the one in front of it, which
   // is another camera's: the second time that one is known.
   for (int pass = 0; pass < 2; ++pass) {
@@ -102,7 +109,7 @@ cv::Mat SmearFinder::find(const BevLabels& labels) const {
       Sight sight;
       if (step.before >= 0) sight = sights[static_cast<std::size_t>(step.before)];
       const auto c = static_cast<SemanticClass>(labels.labels.data[step.pixel]);
-      goOn(sight, c, step.length, least);
+      goOn(sight, c, step.length, least, wall_least);
       sights[static_cast<std::size_t>(step.pixel)] = sight;
       smear.data[step.pixel] = smearOf(sight, c, options_);
     }

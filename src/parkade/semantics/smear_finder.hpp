@@ -17,6 +17,7 @@ struct SmearOptions {
   double edge_m = 0.15;
   double wheel_stop_depth_m = 0.2;
   double least_m = 0.2;
+  double wall_least_m = 0.3;
 
   void visit(OptionVisitor& v) {
     v.field("pillar_depth_m", pillar_depth_m, "m",
@@ -30,6 +31,8 @@ struct SmearOptions {
             "What a wheel stop is deep; the floor behind it is seen again.", 0.05, 1.0);
     v.field("least_m", least_m, "m",
             "Structure that a sight line must cross before it counts as blocked.", 0.0, 2.0);
+    v.field("wall_least_m", wall_least_m, "m",
+            "Wall that it must cross before nothing behind is believed, floor neither.", 0.0, 50.0);
   }
 };
 
@@ -37,7 +40,8 @@ struct SmearOptions {
 /// sight line leaves their top; only the near edge lies where it is drawn. A map that believes the
 /// rest grows streaks behind everything upright. Finds what is labelled pillar, wall, zone marker
 /// or wheel stop deeper behind the near edge than such a thing is thick, seen from the camera of
-/// that part of the picture, or behind a car, which hides where it stands.
+/// that part of the picture, or behind a car, which hides where it stands; and whatever is labelled
+/// behind a wall, which hides all the ground: the smear of a bare wall passes for floor.
 class SmearFinder {
  public:
   SmearFinder(const BevGeometry& geometry, const BevViews& views, const SmearOptions& options);

@@ -104,6 +104,22 @@ TEST(SmearFinder, WhatACarHidesHasNoPlace) {
   EXPECT_EQ(probe.at({3.5, -0.5}), SemanticClass::kVehicle);
 }
 
+// A bare wall's smear passes for floor.
+TEST(SmearFinder, NothingIsSeenBehindAWall) {
+  PaintedFloor floor;
+  floor.polygon({{4.0, -1.0}, {4.5, -1.0}, {4.5, 1.0}, {4.0, 1.0}}, SemanticClass::kWall, 60);
+  floor.polygon({{4.0, 2.0}, {4.15, 2.0}, {4.15, 4.0}, {4.0, 4.0}}, SemanticClass::kWall, 60);
+  floor.polygon({{6.0, -0.4}, {6.0, 0.4}, {6.2, 0.4}, {6.2, -0.4}}, SemanticClass::kSlotLine, 220);
+  floor.labels.labels.setTo(0, finderOf(floor).find(floor.labels) == SemanticFrame::kSmear);
+  const LabelProbe probe(floor.labels);
+  EXPECT_EQ(probe.at({4.2, 0.0}), SemanticClass::kWall);
+  for (const double x : {4.6, 6.1, 8.0}) {
+    EXPECT_EQ(probe.at({x, 0.0}), SemanticClass::kUnknown) << x;
+  }
+  EXPECT_EQ(probe.at({3.8, 0.0}), SemanticClass::kFloor);
+  EXPECT_EQ(probe.at({5.0, 3.0}), SemanticClass::kFloor) << "a stripe is no wall";
+}
+
 TEST(SmearFinder, WallsAreThinAndSpecksBlockNothing) {
   PaintedFloor floor;
   floor.polygon({{4.0, -3.0}, {9.0, -3.0}, {9.0, 3.0}, {4.0, 3.0}}, SemanticClass::kWall, 60);
