@@ -10,7 +10,7 @@
 #include "parkade/geometry/planar.hpp"
 #include "parkade/mapping/bay_stands.hpp"
 #include "parkade/mapping/map_check.hpp"
-#include "parkade/mapping/slot_row.hpp"
+#include "parkade/mapping/row_pattern.hpp"
 
 namespace parkade::slot_rows {
 namespace {

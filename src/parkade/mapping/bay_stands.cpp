@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "parkade/core/median.hpp"
+#include "parkade/mapping/row_pattern.hpp"
 
 namespace parkade::slot_rows {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "parkade/core/median.hpp"
 #include "parkade/geometry/planar.hpp"
-#include "parkade/mapping/slot_row.hpp"
+#include "parkade/mapping/row_pattern.hpp"
 
 namespace parkade::slot_rows {
 namespace {

@@ -7,9 +7,9 @@
 #include <set>
 
 #include "parkade/mapping/map_check.hpp"
+#include "parkade/mapping/row_pattern.hpp"
 #include "parkade/mapping/row_test_support.hpp"
 #include "parkade/mapping/slot_plausibility.hpp"
-#include "parkade/mapping/slot_row.hpp"
 
 namespace parkade {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "parkade/mapping/slot_row.hpp"
+#include "parkade/mapping/row_pattern.hpp"
 
 namespace parkade::slot_rows {
 namespace {
