@@ -9,6 +9,7 @@
 
 #include "parkade/core/median.hpp"
 #include "parkade/geometry/planar.hpp"
+#include "parkade/mapping/map_drawing.hpp"
 #include "parkade/mapping/row_pattern.hpp"
 
 namespace parkade::slot_rows {
@@ -180,6 +181,7 @@ std::vector<Vector2d> findPaintedSigns(const LayeredGrid& grid) {
   const auto bounds = grid.bounds(GridLayer::kRoadMarkers);
   if (!bounds) return signs;
   const Vector2i size = bounds->max - bounds->min + Vector2i::Ones();
+  if (!checkPictureSize(size.cast<double>())) return signs;  // of a drive that went astray
   cv::Mat painted = cv::Mat::zeros(size.y(), size.x(), CV_8UC1);
   for (const auto& [at, tile] : grid.tiles(GridLayer::kRoadMarkers)) {
     const Vector2i corner(at.x * LayeredGrid::kTileCells, at.y * LayeredGrid::kTileCells);

@@ -16,7 +16,7 @@
 namespace parkade::slot_rows {
 
 /// Middles of signs painted on the floor: what the layers hold as painted number, as large as no
-/// number is (0.85 m^2). World frame.
+/// number is (0.85 m^2). World frame. None where the grid is too wide for a picture of it.
 std::vector<Eigen::Vector2d> findPaintedSigns(const LayeredGrid& grid);
 
 /// For each sign in the depth of a row, not in a slot told, one wide slot with the sign in its
