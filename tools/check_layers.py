@@ -43,7 +43,7 @@ RESTRICTED = {
     r"httplib\.h": {"viewer"},
     r"CLI/": {"cli"},
     r"spdlog/": {"cli"},
-    r"opencv2/(?!core)": {"tracking", "bev", "semantics", "io", "sim"},
+    r"opencv2/(?!core)": {"tracking", "bev", "semantics", "io", "mapping", "sim"},
 }
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
