@@ -99,9 +99,6 @@ class BayEndFinder {
     return false;
   }
 
-  static double paintOf(const SlotEvidence::Line& line) {
-    return std::max(0.0, line.contrast()) * line.seen_m;
-  }
   [[nodiscard]] SlotEvidence::Line ahead(const Vector2d& front, const Vector2d& inward) const {
     constexpr double kAhead = 1.2;  // m
     return lookAlong(grid_, front - kPast * inward, front - kAhead * inward);
@@ -112,11 +109,11 @@ class BayEndFinder {
     constexpr double kTooLong = 2.0;
     const Vector2d inward = (c[3] - c[0]).normalized();
     const Vector2d u = (c[1] - c[0]).normalized();
-    double sum = paintOf(lookAlong(grid_, c[0] + kPast * u, c[1] - kPast * u)) +
-                 paintOf(lookAlong(grid_, c[3] + kPast * u, c[2] - kPast * u));
+    double sum = lookAlong(grid_, c[0] + kPast * u, c[1] - kPast * u).paint() +
+                 lookAlong(grid_, c[3] + kPast * u, c[2] - kPast * u).paint();
     for (const auto& [front, rear] : {std::pair{c[0], c[3]}, {c[1], c[2]}}) {
-      sum += paintOf(lookAlong(grid_, front + kPast * inward, rear)) -
-             kTooLong * paintOf(ahead(front, inward));
+      sum += lookAlong(grid_, front + kPast * inward, rear).paint() -
+             kTooLong * ahead(front, inward).paint();
     }
     return sum;
   }

@@ -21,24 +21,31 @@ bool isPillarCell(const LayeredGrid& grid, const Vector2i& cell) {
   return grid.at(GridLayer::kZoneMarkers, cell).believed() == SemanticClass::kPillar;
 }
 
+std::vector<Vector2i> cellsWithin(const LayeredGrid& grid, const Vector2d& p, double radius) {
+  std::vector<Vector2i> cells;
+  const Vector2i middle = grid.cellOf(p);
+  const int reach = static_cast<int>(std::ceil(radius / grid.resolution()));
+  for (int dx = -reach; dx <= reach; ++dx) {
+    for (int dy = -reach; dy <= reach; ++dy) {
+      const Vector2i cell = middle + Vector2i(dx, dy);
+      if ((grid.centerOf(cell) - p).norm() <= radius) cells.push_back(cell);
+    }
+  }
+  return cells;
+}
+
 // Cells of structure that no other pillar is nearer to.
 std::vector<Vector2i> cellsOf(std::size_t pillar, const std::vector<Vector2d>& pillars,
                               const LayeredGrid& grid) {
   std::vector<Vector2i> cells;
   const Vector2d& p = pillars[pillar];
-  const Vector2i middle = grid.cellOf(p);
-  const int reach = static_cast<int>(std::ceil(kReach / grid.resolution()));
-  for (int dx = -reach; dx <= reach; ++dx) {
-    for (int dy = -reach; dy <= reach; ++dy) {
-      const Vector2i cell = middle + Vector2i(dx, dy);
-      const Vector2d at = grid.centerOf(cell);
-      const double distance = (at - p).norm();
-      if (distance > kReach || !isPillarCell(grid, cell)) continue;
-      const bool is_other = std::any_of(pillars.begin(), pillars.end(), [&](const Vector2d& other) {
-        return (at - other).norm() < distance;
-      });
-      if (!is_other) cells.push_back(cell);
-    }
+  for (const Vector2i& cell : cellsWithin(grid, p, kReach)) {
+    if (!isPillarCell(grid, cell)) continue;
+    const Vector2d at = grid.centerOf(cell);
+    const bool is_other = std::any_of(pillars.begin(), pillars.end(), [&](const Vector2d& other) {
+      return (at - other).norm() < (at - p).norm();
+    });
+    if (!is_other) cells.push_back(cell);
   }
   return cells;
 }
@@ -52,19 +59,11 @@ bool hasCounterpart(const LayeredGrid& grid, const Vector2i& cell, const Vector2
 // A disc of pillar, but where walls stand, if at least half of it is known.
 void stampFoot(const Vector2d& middle, double radius, LayeredGrid& grid) {
   constexpr float kLogOdds = 1.0F;  // against what was seen there
-  const Vector2i at = grid.cellOf(middle);
-  const int reach = static_cast<int>(std::ceil(radius / grid.resolution()));
-  std::vector<Vector2i> foot;
-  std::size_t known = 0;
-  for (int dx = -reach; dx <= reach; ++dx) {
-    for (int dy = -reach; dy <= reach; ++dy) {
-      const Vector2i cell = at + Vector2i(dx, dy);
-      if ((grid.centerOf(cell) - middle).norm() > radius) continue;
-      foot.push_back(cell);
-      if (grid.at(GridLayer::kZoneMarkers, cell).known()) ++known;
-    }
-  }
-  if (2 * known < foot.size()) return;
+  const std::vector<Vector2i> foot = cellsWithin(grid, middle, radius);
+  const auto known = std::count_if(foot.begin(), foot.end(), [&](const Vector2i& cell) {
+    return grid.at(GridLayer::kZoneMarkers, cell).known();
+  });
+  if (2 * known < static_cast<std::ptrdiff_t>(foot.size())) return;
   for (const Vector2i& cell : foot) {
     const SemanticClass c = grid.at(GridLayer::kZoneMarkers, cell).believed();
     if (c == SemanticClass::kWall || c == SemanticClass::kPillar) continue;

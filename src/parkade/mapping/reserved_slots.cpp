@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "parkade/core/median.hpp"
-#include "parkade/geometry/planar.hpp"
 #include "parkade/mapping/map_drawing.hpp"
 #include "parkade/mapping/row_pattern.hpp"
 
@@ -46,8 +45,7 @@ class ReservedSlotFinder {
   [[nodiscard]] std::optional<Filling> find(const Row& row, const Pattern& pattern,
                                             const Vector2d& sign) const {
     constexpr double kMiddle = 0.2;  // of the depth: parts of a sign may be out of sight
-    const double deep = cross(row.u, sign - row.origin) / cross(row.u, pattern.side);
-    if (std::abs(deep - 0.5) > kMiddle) return std::nullopt;
+    if (std::abs(depthShare(row, pattern, sign) - 0.5) > kMiddle) return std::nullopt;
     const double s = alongRow(row, pattern, sign);
     const std::optional<Room> room = roomAbout(row, pattern, s);
     if (!room) return std::nullopt;
@@ -95,8 +93,7 @@ class ReservedSlotFinder {
     constexpr double kDeepest = 4.0;  // m; farther in, cars and the picture's edge hide most
     const Vector2d from = row.at(s);
     const Vector2d to = from + std::min(kDeepest, pattern.side.norm()) * pattern.side.normalized();
-    const SlotEvidence::Line line = lookAlong(grid_, from, to);
-    return std::max(0.0, line.contrast()) * line.seen_m;
+    return lookAlong(grid_, from, to).paint();
   }
 
   // The middle of the line near s, which looks the same for a hand's breadth to either side.
@@ -136,8 +133,10 @@ class ReservedSlotFinder {
         best = Front{begin, begin + width, paint};
       }
     }
-    if (best) best->begin = settle(row, pattern, best->begin);
-    if (best) best->end = settle(row, pattern, best->end);
+    if (best) {
+      best->begin = settle(row, pattern, best->begin);
+      best->end = settle(row, pattern, best->end);
+    }
     return best;
   }
 
@@ -146,22 +145,17 @@ class ReservedSlotFinder {
     constexpr double kSign = 3.0;    // hardly anything else is painted like that
     constexpr double kSigma = 0.12;  // m, of corners without paint
     constexpr double kSome = 1.0;    // m of paint
-    const Member& nearest = *std::min_element(
-        row.members.begin(), row.members.end(), [&](const Member& a, const Member& b) {
-          return std::abs(a.begin - front.begin) < std::abs(b.begin - front.begin);
-        });
-    MapSlot slot = unseenSlot(pattern, row.at(front.begin), row.at(front.end), told_[nearest.slot],
-                              front.paint > kSome ? options_.corner_sigma_m : kSigma);
-    const SlotEvidence e = gatherEvidence(grid_, slot.corners);
+    const Place place = placeAt(row, pattern, front.begin, front.end, told_, grid_,
+                                front.paint > kSome ? options_.corner_sigma_m : kSigma);
+    const SlotEvidence& e = place.evidence;
     if (isDenied(e)) return std::nullopt;
-    setFree(e, slot);
     Filling filling;
     // Where the paint is worn the sign stands for it.
     filling.log_odds = kSign + std::max(0.0, likelihood_.side(e.left)) +
                        std::max(0.0, likelihood_.side(e.right)) +
                        std::max(0.0, likelihood_.entrance(e.entrance));
     filling.merit = filling.log_odds;
-    filling.slots.push_back(slot);
+    filling.slots.push_back(place.slot);
     return filling;
   }
 

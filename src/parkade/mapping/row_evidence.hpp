@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 
 #include "parkade/mapping/layered_grid.hpp"
@@ -18,6 +19,8 @@ struct SlotEvidence {
     double beside = 0.0;   ///< along lines a third of a metre beside it
     double seen_m = 0.0;
     [[nodiscard]] double contrast() const { return painted - beside; }
+    /// Metres of paint that stand out.
+    [[nodiscard]] double paint() const { return std::max(0.0, contrast()) * seen_m; }
   };
   Line entrance;
   Line left;

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "parkade/mapping/row_pattern.hpp"
-
 namespace parkade::slot_rows {
 namespace {
 
@@ -38,10 +36,6 @@ class GapFiller {
   }
 
  private:
-  struct Place {
-    MapSlot slot;
-    SlotEvidence evidence;
-  };
   static bool isOpen(const Gap& gap) {
     return gap.at_begin == GapEnd::kOpen || gap.at_end == GapEnd::kOpen;
   }
@@ -105,11 +99,15 @@ class GapFiller {
             gap.at_end == GapEnd::kPillar ? pattern_.after : kNone};
   }
 
+  [[nodiscard]] Place placeIn(double begin, double end) const {
+    return placeAt(row_, pattern_, begin, end, told_, grid_, options_.corner_sigma_m);
+  }
+
   [[nodiscard]] std::vector<Place> placesOf(const Fit& fit) const {
     std::vector<Place> places;
     for (int i = 0; i < fit.count; ++i) {
       const double begin = fit.begin + i * fit.front;
-      places.push_back(placeAt(begin, begin + fit.front));
+      places.push_back(placeIn(begin, begin + fit.front));
     }
     return places;
   }
@@ -124,7 +122,7 @@ class GapFiller {
     for (int i = 0; i < kMost; ++i) {
       const double begin =
           forwards ? gap.begin + i * pattern_.front : gap.end - (i + 1) * pattern_.front;
-      const Place place = placeAt(begin, begin + pattern_.front);
+      const Place place = placeIn(begin, begin + pattern_.front);
       const SlotEvidence& e = place.evidence;
       const double log_odds = kPrior + likelihood_.side(forwards ? e.right : e.left) +
                               likelihood_.entrance(e.entrance) + SlotLikelihood::vehicle(e) +
@@ -198,19 +196,6 @@ class GapFiller {
     return filling.log_odds > options_.min_log_odds ? filling : Filling{};
   }
 
-  [[nodiscard]] Place placeAt(double begin, double end) const {
-    const Member& nearest = *std::min_element(
-        row_.members.begin(), row_.members.end(), [&](const Member& a, const Member& b) {
-          return std::abs(a.begin - begin) < std::abs(b.begin - begin);
-        });
-    Place place;
-    place.slot = unseenSlot(pattern_, row_.at(begin), row_.at(end), told_[nearest.slot],
-                            options_.corner_sigma_m);
-    place.evidence = gatherEvidence(grid_, place.slot.corners);
-    setFree(place.evidence, place.slot);
-    return place;
-  }
-
   const std::vector<MapSlot>& told_;
   const Row& row_;
   const Pattern& pattern_;
@@ -220,6 +205,19 @@ class GapFiller {
 };
 
 }  // namespace
+
+Place placeAt(const Row& row, const Pattern& pattern, double begin, double end,
+              const std::vector<MapSlot>& told, const LayeredGrid& grid, double sigma) {
+  const Member& nearest = *std::min_element(
+      row.members.begin(), row.members.end(), [&](const Member& a, const Member& b) {
+        return std::abs(a.begin - begin) < std::abs(b.begin - begin);
+      });
+  Place place;
+  place.slot = unseenSlot(pattern, row.at(begin), row.at(end), told[nearest.slot], sigma);
+  place.evidence = gatherEvidence(grid, place.slot.corners);
+  setFree(place.evidence, place.slot);
+  return place;
+}
 
 std::vector<Filling> findFillings(const std::vector<MapSlot>& told,
                                   const std::vector<Vector2d>& pillars, const LayeredGrid& grid,

@@ -9,11 +9,23 @@
 #include "parkade/mapping/parking_map.hpp"
 #include "parkade/mapping/row_completion.hpp"
 #include "parkade/mapping/row_evidence.hpp"
+#include "parkade/mapping/row_pattern.hpp"
 #include "parkade/mapping/slot_likelihood.hpp"
 
 // Inside of the row completion: slots that would fill the gaps of rows.
 
 namespace parkade::slot_rows {
+
+/// A slot that nobody saw, and what the layers hold of it, by which it is free or not.
+struct Place {
+  MapSlot slot;
+  SlotEvidence evidence;
+};
+
+/// From begin to end along a row of `told`, like its nearest slot seen last; corners known to sigma
+/// (m) at best.
+Place placeAt(const Row& row, const Pattern& pattern, double begin, double end,
+              const std::vector<MapSlot>& told, const LayeredGrid& grid, double sigma);
 
 struct Filling {
   std::vector<MapSlot> slots;  ///< from left to right

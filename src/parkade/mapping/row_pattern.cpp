@@ -167,12 +167,15 @@ MapSlot unseenSlot(const Pattern& pattern, const Vector2d& left, const Vector2d&
   return slot;
 }
 
+double depthShare(const Row& row, const Pattern& pattern, const Vector2d& p) {
+  // The same sign, whichever side the slots lie on.
+  return cross(row.u, p - row.origin) / cross(row.u, pattern.side);
+}
+
 bool standsIn(const Row& row, const Pattern& pattern, const Vector2d& p) {
   constexpr double kAhead = 0.6;  // m
-  const double deep = cross(row.u, p - row.origin);
-  const double depth = cross(row.u, pattern.side);
-  const double share = deep / depth;  // the same sign, whichever side the slots lie on
-  return share > -kAhead / std::abs(depth) && share < 1.0;
+  const double share = depthShare(row, pattern, p);
+  return share > -kAhead / std::abs(cross(row.u, pattern.side)) && share < 1.0;
 }
 
 double alongRow(const Row& row, const Pattern& pattern, const Vector2d& p) {

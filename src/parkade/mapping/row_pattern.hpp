@@ -44,6 +44,9 @@ MapSlot unseenSlot(const Pattern& pattern, const Eigen::Vector2d& left,
 /// Where p lies along the row, seen along the sides of its slots.
 double alongRow(const Row& row, const Pattern& pattern, const Eigen::Vector2d& p);
 
+/// How deep p lies behind the entrances, as a share of the slots' depth.
+double depthShare(const Row& row, const Pattern& pattern, const Eigen::Vector2d& p);
+
 /// Whether a pillar stands in a row's depth, or a little in front.
 bool standsIn(const Row& row, const Pattern& pattern, const Eigen::Vector2d& p);
 
