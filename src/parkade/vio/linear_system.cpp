@@ -63,7 +63,9 @@ double LinearSystem::linearise(const Window& window, const FactorSelection& sele
   addImu(window, selection);
   addMotion(window, selection);
   if (selection.calibration) addCalibration(window);
-  for (WindowFeature* feature : selection.features) addFeature(window, *feature);
+  for (WindowFeature* feature : selection.features) {
+    addFeature(window, *feature, selection.inverse_distance_information);
+  }
   return cost_;
 }
 
@@ -185,7 +187,8 @@ void LinearSystem::addMotion(const Window& window, const FactorSelection& select
   }
 }
 
-void LinearSystem::addFeature(const Window& window, WindowFeature& feature) {
+void LinearSystem::addFeature(const Window& window, WindowFeature& feature,
+                              double prior_information) {
   const int a = window.indexOf(feature.anchor_frame_id);
   if (a < 0) return;
   const auto anchor = static_cast<std::size_t>(a);
@@ -197,9 +200,9 @@ void LinearSystem::addFeature(const Window& window, WindowFeature& feature) {
   const bool refine = !window.refinements.empty();
   CameraJacobians cameras;
   const double off_prior = feature.inverse_distance - kPriorInverseDistance;
-  landmark.V(2, 2) = kPriorInverseDistanceInformation;
-  landmark.b(2) = kPriorInverseDistanceInformation * off_prior;
-  cost_ += 0.5 * kPriorInverseDistanceInformation * off_prior * off_prior;
+  landmark.V(2, 2) = prior_information;
+  landmark.b(2) = prior_information * off_prior;
+  cost_ += 0.5 * prior_information * off_prior * off_prior;
 
   const auto coupling = [&](int frame) -> Matrix63d& {
     int& slot = slot_[static_cast<std::size_t>(frame)];

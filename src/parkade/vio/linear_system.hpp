@@ -18,6 +18,8 @@ struct FactorSelection {
   std::vector<char> still;  ///< per frame: rest since still_since
   std::vector<char> unary;  ///< per frame: body velocity, start prior (with gravity's)
   bool calibration = true;  ///< what is known beforehand of refined cameras
+  /// Of what is known beforehand of a landmark's inverse distance, m^2.
+  double inverse_distance_information = kPriorInverseDistanceInformation;
   std::vector<WindowFeature*> features;
 
   /// Everything in the window but features.
@@ -82,7 +84,7 @@ class LinearSystem {
   void addMotion(const Window& window, const FactorSelection& selection);
   void addStart(const Window& window, const WindowFrame& frame, int index);
   void addCalibration(const Window& window);
-  void addFeature(const Window& window, WindowFeature& feature);
+  void addFeature(const Window& window, WindowFeature& feature, double prior_information);
   void addCameras(const CameraJacobians& cameras, const WindowObservation& observation,
                   double weight, int anchor_camera, int anchor, int target,
                   const Eigen::Vector2d& r, const ReprojectionJacobians& j,

@@ -41,6 +41,7 @@ FactorSelection selectFactors(const Window& window, std::size_t index,
   }
   selection.unary[index] = 1;
   selection.features = landmarks;
+  selection.inverse_distance_information = kLeavingInverseDistanceInformation;
   return selection;
 }
 

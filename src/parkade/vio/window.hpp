@@ -115,9 +115,12 @@ struct WindowObservation {
 using Observations = std::vector<std::pair<std::uint64_t, WindowObservation>>;
 
 /// What is known of a landmark's inverse distance before any image: it keeps those without parallax
-/// (a car at rest, pure turning) where landmarks are; a few millimetres of motion outweigh it.
-inline constexpr double kPriorInverseDistance = 0.15;            // 1/m
-inline constexpr double kPriorInverseDistanceInformation = 4.0;  // m^2: 0.5 per metre, 1 sigma
+/// (a car at rest, pure turning) where landmarks are; a few millimetres of motion outweigh it. All
+/// landmarks together would tell lengths with it, though (docs/math/residuals.md, eq. 4), so those
+/// that leave the window, tens of thousands in a drive, leave less of it behind.
+inline constexpr double kPriorInverseDistance = 0.15;               // 1/m
+inline constexpr double kPriorInverseDistanceInformation = 1.0;     // m^2: 1 per metre, 1 sigma
+inline constexpr double kLeavingInverseDistanceInformation = 0.04;  // m^2: 5 per metre, 1 sigma
 
 /// A landmark: a direction and an inverse distance in the camera that saw it first. Three degrees
 /// of freedom: two in the plane across the direction, then the inverse distance.
