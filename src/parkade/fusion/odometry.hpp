@@ -13,7 +13,7 @@ namespace parkade {
 /// How the visual-inertial odometry errs between two frame sets, at least.
 struct OdometryNoiseOptions {
   double translation = 0.001;
-  double yaw_deg = 0.004;
+  double yaw_deg = 0.005;
   double height = 0.002;
   double standing = 0.0005;
   double degraded_factor = 5.0;

@@ -57,7 +57,7 @@ bool Compass::learnAxis() {
 }
 
 std::optional<double> Compass::read(const SemanticFrame& frame, double expected_heading,
-                                    double travelled_m) {
+                                    double travelled_m, double axis_shift) {
   if (!options_.enable) return std::nullopt;
   if (begin_m_ < 0.0) begin_m_ = travelled_m;
   const std::vector<Line> lines = linesOf(frame);
@@ -77,13 +77,13 @@ std::optional<double> Compass::read(const SemanticFrame& frame, double expected_
   double all = 0.0;
   for (const Line& line : lines) {
     all += line.weight;
-    const double off = wrapQuarter(axis_ - (line.direction + expected_heading));
+    const double off = wrapQuarter(axis_ + axis_shift - (line.direction + expected_heading));
     if (std::abs(off) > options_.window_deg * kDegree) continue;
     sum += line.weight * off;
     along_axes += line.weight;
   }
   if (along_axes <= 0.0 || along_axes < options_.min_share * all) return std::nullopt;
-  return expected_heading + sum / along_axes;
+  return expected_heading + sum / along_axes - axis_shift;
 }
 
 }  // namespace parkade

@@ -49,9 +49,16 @@ class Compass {
   explicit Compass(const CompassOptions& options) : options_(options) {}
 
   /// Enters a frame seen at the expected heading, at this way travelled. Gives the heading that the
-  /// axes tell, once they are known; nothing where too few lines lie along them.
+  /// axes as learned tell, once they are known; nothing where too few lines lie along them. Lines
+  /// are looked for about the axes turned by axis_shift: what is known by now of how wrong they
+  /// were learned. A window about wrong axes would cut the lines' scatter on one side.
   std::optional<double> read(const SemanticFrame& frame, double expected_heading,
-                             double travelled_m);
+                             double travelled_m, double axis_shift = 0.0);
+
+  /// The direction of the axes in the world as learned, modulo 90 degrees, once it is.
+  [[nodiscard]] std::optional<double> axis() const {
+    return learned_ ? std::optional<double>(axis_) : std::nullopt;
+  }
 
  private:
   CompassOptions options_;

@@ -45,6 +45,21 @@ TEST(Compass, ReadsTheHeadingOffAxesThatItLearned) {
   EXPECT_NEAR(*found, 0.0, 1e-9);
 }
 
+TEST(Compass, LooksAboutTheAxesAsTheyAreKnownByNow) {
+  // Learned 2 degrees off; lines scatter by 2 degrees about what is true.
+  Compass compass({});
+  for (double way = 0.0; way < 10.0; way += 1.0) {
+    EXPECT_FALSE(compass.read(frameOf({22, 112}, 0.0), 0.0, way));
+  }
+  const SemanticFrame scattered = frameOf({18, 20, 22, 108, 110, 112}, 0.0);
+  const auto about_wrong = compass.read(scattered, 0.0, 20.0);
+  ASSERT_TRUE(about_wrong);
+  EXPECT_NEAR(*about_wrong / kDegree, 1.0, 1e-6) << "18 and 108 are out of its window";
+  const auto about_right = compass.read(scattered, 0.0, 21.0, -2.0 * kDegree);
+  ASSERT_TRUE(about_right);
+  EXPECT_NEAR(*about_right / kDegree, 2.0, 1e-6) << "by the axes as learned, all alike";
+}
+
 TEST(Compass, LearnsBesideSlantedRows) {
   Compass compass({});
   for (double way = 0.0; way < 10.0; way += 1.0) {

@@ -8,6 +8,7 @@
 #include "parkade/core/options.hpp"
 #include "parkade/fusion/odometry.hpp"
 #include "parkade/localization/compass.hpp"
+#include "parkade/localization/row_compass.hpp"
 #include "parkade/localization/loop_closure.hpp"
 #include "parkade/localization/registration.hpp"
 #include "parkade/mapping/global_map.hpp"
@@ -66,6 +67,7 @@ struct FusedMapperOptions {
   RegistrationOptions registration;
   LoopOptions loop;
   CompassOptions compass;
+  RowCompassOptions rows;
   LocalMapOptions local_map;
   GlobalMapOptions global_map;
   SlotRegistryOptions slots;
@@ -77,6 +79,7 @@ struct FusedMapperOptions {
     v.group("registration", registration);
     v.group("loop", loop);
     v.group("compass", compass);
+    v.group("rows", rows);
     v.group("local_map", local_map);
     v.group("global_map", global_map);
     v.group("slots", slots);

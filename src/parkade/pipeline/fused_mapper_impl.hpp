@@ -42,6 +42,7 @@ class FusedMapper::Impl {
       : options(o),
         viewpoints(std::move(cameras)),
         compass(o.compass),
+        rows(o.rows),
         local(o.local_map),
         global(o.global_map),
         slots(o.slots),
@@ -56,6 +57,7 @@ class FusedMapper::Impl {
   void followCorrections();
 
   void readCompass(const SemanticFrame& frame, const View& view);
+  void turnTo(double heading, double sigma, const View& view);
   void registerFrameToSubmaps(const SemanticFrame& frame, const View& view);
   void tryStretch(const SemanticFrame& frame, const View& view, std::size_t index, bool revisit);
   void addLoopEdge(const Stretch& stretch, const Registration& fit, const View& view);
@@ -72,6 +74,7 @@ class FusedMapper::Impl {
   FusedMapperOptions options;
   std::vector<Eigen::Vector3d> viewpoints;
   Compass compass;
+  RowCompass rows;
   std::int64_t axes = -1;     // heading reference of the filter, once the compass has learned
   double axes_heading = 0.0;  // of that reference as it was then
   PoseFilter filter;

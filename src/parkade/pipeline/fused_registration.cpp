@@ -110,16 +110,31 @@ void FusedMapper::Impl::tryStretch(const SemanticFrame& frame, const View& view,
 }
 
 void FusedMapper::Impl::readCompass(const SemanticFrame& frame, const View& view) {
+  if (!options.compass.enable) return;
+  const SE2 in_odometry = SE2::fromSE3(view.odometry.T_odom_vehicle);
+  if (view.odometry.health != Health::kTracking) rows.forget();
+  rows.add(frame, in_odometry, view.travelled);
   const double expected = poseOf(view).angle();
-  const std::optional<double> heading = compass.read(frame, expected, view.travelled);
-  if (!heading) return;
+  const double axis_shift =
+      axes < 0 ? 0.0 : wrapAngle(filter.anchor(axes).T_world_vehicle.angle() - axes_heading);
+  const std::optional<double> heading = compass.read(frame, expected, view.travelled, axis_shift);
+  const std::optional<double> axis = compass.axis();
+  if (!axis) return;
   if (axes < 0) {
     axes = filter.addHeadingReference(options.compass.reference_sigma_deg * kDegree);
     axes_heading = filter.anchor(axes).T_world_vehicle.angle();
   }
-  const FilterUpdate update =
-      filter.updateTurn(axes, *heading - axes_heading, options.compass.sigma_deg * kDegree,
-                        options.submaps.gate_probability, view.anchor);
+  if (heading) turnTo(*heading, options.compass.sigma_deg * kDegree, view);
+  const double drift = poseOf(view).angle() - in_odometry.angle();
+  if (const std::optional<RowReading> row = rows.read(*axis + axis_shift - drift)) {
+    turnTo(*axis - row->direction + in_odometry.angle(), row->sigma, view);
+  }
+}
+
+// The axes tell that the car of a view is headed so.
+void FusedMapper::Impl::turnTo(double heading, double sigma, const View& view) {
+  const FilterUpdate update = filter.updateTurn(axes, heading - axes_heading, sigma,
+                                                options.submaps.gate_probability, view.anchor);
   if (!update.accepted) return;
   ++statistics.headings;
   corrected = true;
