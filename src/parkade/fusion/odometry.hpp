@@ -14,7 +14,7 @@ namespace parkade {
 struct OdometryNoiseOptions {
   double translation = 0.001;
   double yaw_deg = 0.005;
-  double height = 0.002;
+  double height = 0.0017;
   double standing = 0.0005;
   double degraded_factor = 5.0;
   double told_share = 0.25;
