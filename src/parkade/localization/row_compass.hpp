@@ -21,7 +21,7 @@ struct RowCompassOptions {
   double scatter_m = 0.03;
   double search_deg = 0.8;
   double min_excess = 80.0;
-  double min_contrast = 1.3;
+  double min_contrast = 2.0;
   double sigma_deg = 0.05;
   double doubling_excess = 300.0;
 
