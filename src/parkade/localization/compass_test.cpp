@@ -7,12 +7,11 @@
 #include <cmath>
 
 #include "parkade/core/random.hpp"
+#include "parkade/core/units.hpp"
 #include "parkade/geometry/so3.hpp"
 
 namespace parkade {
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 SemanticFrame frameOf(const std::vector<double>& directions_deg, double heading) {
   SemanticFrame frame;

@@ -16,6 +16,7 @@ constexpr double kLeastShare = 0.6;
 // Where a pair stops counting, in scatters.
 constexpr double kReachOfKernel = 3.0;
 constexpr double kPointSpacing = 1.0;  // m, along a line
+constexpr double kView = 20.0;         // m, ahead and behind together, that pictures show at most
 constexpr double kStep = 0.02 * kDegree;
 
 }  // namespace
@@ -38,10 +39,10 @@ void RowCompass::add(const SemanticFrame& frame, const SE2& T_odom_vehicle, doub
   while (travelled_m - seen_.front().travelled_m > options_.window_m) seen_.pop_front();
 }
 
-std::vector<RowCompass::Pair> RowCompass::pairsAlong(double direction) const {
+void RowCompass::appendPairs(double direction, std::vector<AlongAcross>& pairs) const {
   const Eigen::Vector2d along(std::cos(direction), std::sin(direction));
   const Eigen::Vector2d across(-along.y(), along.x());
-  std::vector<Pair> points;  // along and across, of each
+  std::vector<AlongAcross> points;
   for (const Seen& seen : seen_) {
     for (const Eigen::Vector2d& p : seen.points) {
       points.push_back({static_cast<float>(along.dot(p)), static_cast<float>(across.dot(p))});
@@ -49,30 +50,28 @@ std::vector<RowCompass::Pair> RowCompass::pairsAlong(double direction) const {
   }
   // Sorted across, partners lie within a band of neighbours.
   std::sort(points.begin(), points.end(),
-            [](const Pair& a, const Pair& b) { return a.off < b.off; });
+            [](const AlongAcross& a, const AlongAcross& b) { return a.across < b.across; });
   const auto apart = static_cast<float>(options_.apart_m);
   const auto kernel = static_cast<float>(kReachOfKernel * options_.scatter_m);
   const auto slope = static_cast<float>(std::tan(options_.search_deg * kDegree));
-  const float widest = kernel + slope * static_cast<float>(options_.window_m + 20.0);
-  std::vector<Pair> pairs;
+  const float widest = kernel + slope * static_cast<float>(options_.window_m + kView);
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t j = i + 1; j < points.size(); ++j) {
-      Pair pair{points[j].along - points[i].along, points[j].off - points[i].off};
-      if (pair.off > widest) break;
-      if (pair.along < 0.0F) pair = {-pair.along, -pair.off};
-      if (pair.along < apart || std::abs(pair.off) > kernel + slope * pair.along) continue;
+      AlongAcross pair{points[j].along - points[i].along, points[j].across - points[i].across};
+      if (pair.across > widest) break;
+      if (pair.along < 0.0F) pair = {-pair.along, -pair.across};
+      if (pair.along < apart || std::abs(pair.across) > kernel + slope * pair.along) continue;
       pairs.push_back(pair);
     }
   }
-  return pairs;
 }
 
-double RowCompass::support(const std::vector<Pair>& pairs, double turn) const {
+double RowCompass::support(const std::vector<AlongAcross>& pairs, double turn) const {
   const auto slope = static_cast<float>(std::tan(turn));
   const auto scale = static_cast<float>(1.0 / (kReachOfKernel * options_.scatter_m));
   float sum = 0.0F;
-  for (const Pair& pair : pairs) {
-    const float u = scale * (pair.off - slope * pair.along);
+  for (const AlongAcross& pair : pairs) {
+    const float u = scale * (pair.across - slope * pair.along);
     const float fit = std::max(0.0F, 1.0F - u * u);
     sum += fit * fit;
   }
@@ -85,9 +84,9 @@ std::optional<RowReading> RowCompass::read(double expected_direction) {
   if (now - seen_.front().travelled_m < kLeastShare * options_.window_m) return std::nullopt;
   if (now - last_read_m_ < options_.spacing_m) return std::nullopt;
   last_read_m_ = now;
-  std::vector<Pair> pairs = pairsAlong(expected_direction);
-  const std::vector<Pair> square = pairsAlong(expected_direction + 0.5 * M_PI);
-  pairs.insert(pairs.end(), square.begin(), square.end());
+  std::vector<AlongAcross> pairs;
+  appendPairs(expected_direction, pairs);
+  appendPairs(expected_direction + 0.5 * M_PI, pairs);
   const int half = std::max(1, static_cast<int>(options_.search_deg * kDegree / kStep));
   std::vector<double> supports;
   for (int i = -half; i <= half; ++i) supports.push_back(support(pairs, i * kStep));

@@ -81,17 +81,18 @@ class RowCompass {
   std::optional<RowReading> read(double expected_direction);
 
  private:
-  /// Two points of a row, if it is one: how far apart along it, and how far off it the second lies.
-  struct Pair {
+  /// A point, or the way from one point to another, along a row and across it, m.
+  struct AlongAcross {
     float along;
-    float off;
+    float across;
   };
   struct Seen {
     double travelled_m;
     std::vector<Eigen::Vector2d> points;  // odometry's frame
   };
-  [[nodiscard]] std::vector<Pair> pairsAlong(double direction) const;
-  [[nodiscard]] double support(const std::vector<Pair>& pairs, double turn) const;
+  /// The ways between any two points that may lie on one row along about this direction.
+  void appendPairs(double direction, std::vector<AlongAcross>& pairs) const;
+  [[nodiscard]] double support(const std::vector<AlongAcross>& pairs, double turn) const;
 
   RowCompassOptions options_;
   std::deque<Seen> seen_;
