@@ -76,6 +76,26 @@ TEST(CarPriors, WheelsTellASingleCameraItsScale) {
   EXPECT_LT(with.end_error, 0.03 * drive.distance);
 }
 
+TEST(CarPriors, WheelsStartASingleCameraInMotion) {
+  // The alignment of a few frames finds next to no speed here, in any direction.
+  for (const std::uint64_t seed : {2, 4, 12}) {
+    TrackSimulatorOptions options;
+    options.seed = seed;
+    options.length = 30.0;
+    options.stops = {};
+    options.initial_rest = 0.0;
+    options.start_speed = 3.0;
+    options.frame_rate = 20.0;
+    options.tracks_per_camera = 80;
+    VioOptions vio;
+    vio.use_wheel = true;
+    const DriveScore score =
+        run(simulateDrive(*testing::stereoRig().subset({"cam0"}), options), vio);
+    fmt::print("seed {}: rmse {:.3f} m\n", seed, score.rmse);
+    EXPECT_LT(score.rmse, 0.3);
+  }
+}
+
 TEST(CarPriors, HoldTheCarInTheDark) {
   TrackSimulatorOptions options;
   options.length = 50.0;

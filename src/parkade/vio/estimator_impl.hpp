@@ -57,9 +57,10 @@ class VioEstimator::Impl {
     [[nodiscard]] double penalty() const;
   };
   StartTrial tryStart(std::vector<NavState> states, const ImuBias& bias, StartPrior prior);
-  [[nodiscard]] std::vector<NavState> withSpeed(const std::vector<NavState>& states,
-                                                double speed) const;
-  [[nodiscard]] std::optional<double> wheelSpeed() const;
+  /// The same motion with another velocity at the first frame.
+  [[nodiscard]] std::vector<NavState> withVelocity(const std::vector<NavState>& states,
+                                                   const Eigen::Vector3d& first) const;
+  [[nodiscard]] std::optional<Eigen::Vector3d> wheelVelocity(const NavState& first) const;
   void enterWindow(const std::vector<NavState>& states, std::size_t first, const ImuBias& bias,
                    const StartPrior& prior);
   void restart(const std::string& reason);

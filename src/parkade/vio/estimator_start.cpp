@@ -20,6 +20,7 @@ constexpr int kMinStartObservations = 60;
 constexpr double kTrialSpeeds[] = {0.4, 1.0, 2.0, 4.0, 8.0};  // m/s
 constexpr double kUsualDistance = 4.0;                        // m, of landmarks
 constexpr double kDistanceSpread = 2.5;                       // factor, 1 sigma
+constexpr double kLeastInverseDistance = 1e-3;                // 1/m; beyond infinity is below 0
 constexpr double kMaxSpeedSpread = 0.1;                       // of the speed
 
 }  // namespace
@@ -119,14 +120,19 @@ bool VioEstimator::Impl::startInMotion() {
       Eigen::Vector3d::Constant(options_.start_up.bias_accel_sigma);
   const bool late = span >= options_.start_up.max_span_s;
   StartTrial best = tryStart(alignment.states, alignment.bias, prior);
-  std::vector<double> speeds;
-  // Even motion hardly tells its scale from few images, and noise then shrinks the linear
-  // solution: other speeds along its direction are tried, and the most plausible is kept.
-  if (late) speeds.assign(std::begin(kTrialSpeeds), std::end(kTrialSpeeds));
-  if (const std::optional<double> wheels = wheelSpeed()) speeds.push_back(*wheels);
   if (!best.sharp()) {
-    for (const double speed : speeds) {
-      StartTrial trial = tryStart(withSpeed(alignment.states, speed), alignment.bias, prior);
+    // Even motion hardly tells its scale from few images, and noise then shrinks the linear
+    // solution: other speeds along its direction are tried, and the most plausible is kept.
+    std::vector<Eigen::Vector3d> velocities;
+    const Eigen::Vector3d along = alignment.states.front().v_odom.normalized();
+    if (late) {
+      for (const double speed : kTrialSpeeds) velocities.emplace_back(speed * along);
+    }
+    if (const std::optional<Eigen::Vector3d> wheels = wheelVelocity(alignment.states.front())) {
+      velocities.push_back(*wheels);
+    }
+    for (const Eigen::Vector3d& velocity : velocities) {
+      StartTrial trial = tryStart(withVelocity(alignment.states, velocity), alignment.bias, prior);
       if (trial.fits() && (!best.fits() || trial.penalty() < best.penalty())) {
         best = std::move(trial);
       }
@@ -154,13 +160,15 @@ bool VioEstimator::Impl::startInMotion() {
   return false;
 }
 
-std::optional<double> VioEstimator::Impl::wheelSpeed() const {
+// Straight ahead: what shrinks the linear solution also turns it.
+std::optional<Eigen::Vector3d> VioEstimator::Impl::wheelVelocity(const NavState& first) const {
   WindowFrame frame;
   frame.t_ns = start_frames_.front().t_ns;
   frame.gyro = readings_.at(frame.t_ns).gyro;
   addBodyVelocity(frame);
   if (frame.body_velocity_sigma.x() <= 0.0) return std::nullopt;
-  return std::abs(frame.body_velocity.x());
+  return first.R_odom_imu *
+         (window_.T_imu_vehicle.rotation() * Eigen::Vector3d(frame.body_velocity.x(), 0.0, 0.0));
 }
 
 // The window that grows from given states of the start's frames.
@@ -180,11 +188,11 @@ VioEstimator::Impl::StartTrial VioEstimator::Impl::tryStart(std::vector<NavState
   trial.landmarks = static_cast<int>(selected.size());
   trial.speed = window_.frames.back().state.v_odom.norm();
   trial.speed_sigma = std::sqrt(trial.summary.newest_covariance.block<3, 3>(6, 6).trace());
-  std::vector<double> distances;
-  for (const WindowFeature* feature : selected) {
-    distances.push_back(1.0 / feature->inverse_distance);
+  std::vector<double> inverses;
+  for (const WindowFeature* feature : selected) inverses.push_back(feature->inverse_distance);
+  if (!inverses.empty()) {
+    trial.median_distance = 1.0 / std::max(median(std::move(inverses)), kLeastInverseDistance);
   }
-  if (!distances.empty()) trial.median_distance = median(std::move(distances));
   trial.window = window_;
   return trial;
 }
@@ -209,11 +217,10 @@ double VioEstimator::Impl::StartTrial::penalty() const {
   return cost() + 0.5 * away * away / summary.observations;
 }
 
-std::vector<NavState> VioEstimator::Impl::withSpeed(const std::vector<NavState>& states,
-                                                    double speed) const {
+std::vector<NavState> VioEstimator::Impl::withVelocity(const std::vector<NavState>& states,
+                                                       const Eigen::Vector3d& first) const {
   std::vector<NavState> result = states;
-  const Eigen::Vector3d v = states.front().v_odom;
-  const Eigen::Vector3d change = v * (speed / std::max(v.norm(), 1e-6) - 1.0);
+  const Eigen::Vector3d change = first - states.front().v_odom;
   for (std::size_t i = 0; i < result.size(); ++i) {
     result[i].v_odom += change;
     result[i].p_odom += toSeconds(start_frames_[i].t_ns - start_frames_.front().t_ns) * change;
