@@ -38,4 +38,14 @@ inline RobustValue tukey(double s, double scale) {
   return {limit / 3.0 * (1.0 - inside * inside * inside), inside * inside};
 }
 
+/// A kernel and its scale.
+struct RobustLoss {
+  enum class Kernel { kHuber, kCauchy };
+  Kernel kernel = Kernel::kHuber;
+  double scale = 2.0;  ///< standard deviations
+  [[nodiscard]] RobustValue operator()(double s) const {
+    return kernel == Kernel::kCauchy ? cauchy(s, scale) : huber(s, scale);
+  }
+};
+
 }  // namespace parkade

@@ -42,7 +42,7 @@ struct FlowOptions {
   double max_scale = 1.6;
   double affine_sigma = 0.3;
   double max_gap_s = 0.35;
-  double sigma_floor_px = 0.5;
+  double sigma_floor_px = 0.35;
   void visit(OptionVisitor& v) {
     v.field("window_px", window_px, "px", "Side of the window of the pyramidal flow.", 7, 41);
     v.field("levels", levels, "count", "Pyramid levels above the image itself.", 0, 6);

@@ -163,7 +163,7 @@ void VioEstimator::Impl::addFrame(const TrackSet& tracks) {
 SolveOptions VioEstimator::Impl::solveOptions(int max_iterations) const {
   SolveOptions solve;
   solve.max_iterations = max_iterations;
-  solve.huber = options_.window.huber_px;
+  solve.loss = {RobustLoss::Kernel::kCauchy, options_.window.cauchy};
   return solve;
 }
 

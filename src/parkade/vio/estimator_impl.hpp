@@ -88,6 +88,7 @@ class VioEstimator::Impl {
 
   [[nodiscard]] PoseEstimate estimate() const;
   [[nodiscard]] SolveOptions solveOptions(int max_iterations) const;
+  [[nodiscard]] SolveOptions startOptions() const;
 
   VioOptions options_;
   double wheel_track_ = 0.0;

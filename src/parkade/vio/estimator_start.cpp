@@ -15,6 +15,7 @@ constexpr double kGaugeRotation = 1e-5;  // rad
 constexpr std::size_t kMinStartFrames = 5;
 constexpr double kMinRestSpan = 0.25;  // s of quiet readings
 constexpr int kStartIterations = 15;
+constexpr double kStartBend = 0.3;     // sigma, of Huber's loss
 constexpr double kMaxStartCost = 3.0;  // per observation, half squared sigmas
 constexpr int kMinStartObservations = 60;
 constexpr double kTrialSpeeds[] = {0.4, 1.0, 2.0, 4.0, 8.0};  // m/s
@@ -61,6 +62,13 @@ PoseEstimate VioEstimator::Impl::startUp(const TrackSet& tracks) {
   return result;
 }
 
+SolveOptions VioEstimator::Impl::startOptions() const {
+  SolveOptions solve = solveOptions(kStartIterations);
+  // A first guess may be far off: convex, unlike the loss that follows.
+  solve.loss = {RobustLoss::Kernel::kHuber, kStartBend};
+  return solve;
+}
+
 bool VioEstimator::Impl::startAtRest() {
   if (!options_.standstill.enable) return false;
   const TimeNs now = start_frames_.back().t_ns;
@@ -96,7 +104,7 @@ bool VioEstimator::Impl::startAtRest() {
   still_anchor_id_ = window_.frames.back().id;
   window_.frames.back().still_since = still_anchor_id_;
   window_.frames.back().keyframe = true;
-  optimise(solveOptions(kStartIterations));
+  optimise(startOptions());
   return true;
 }
 
@@ -179,12 +187,12 @@ VioEstimator::Impl::StartTrial VioEstimator::Impl::tryStart(std::vector<NavState
   // The biases' prior is about zero, not about the alignment.
   window_.start.bias = ImuBias{};
   features_.triangulateNew(window_);
-  optimise(solveOptions(kStartIterations));
+  optimise(startOptions());
   features_.forgive(window_);
   features_.triangulateNew(window_);
   const std::vector<WindowFeature*> selected = features_.select(window_);
   StartTrial trial;
-  trial.summary = solveWindow(window_, selected, solveOptions(kStartIterations));
+  trial.summary = solveWindow(window_, selected, startOptions());
   trial.landmarks = static_cast<int>(selected.size());
   trial.speed = window_.frames.back().state.v_odom.norm();
   trial.speed_sigma = std::sqrt(trial.summary.newest_covariance.block<3, 3>(6, 6).trace());

@@ -77,7 +77,7 @@ void VioEstimator::Impl::removeFrame(std::size_t index) {
   const bool too_long = toSeconds(after.t_ns - before.t_ns) > kMaxSummed;
   if (in_prior || !frame.imu || !after.imu || too_long) {
     FrameConditional conditional =
-        marginaliseFrame(window_, frame.id, {}, options_.window.huber_px, solveOptions(1).still);
+        marginaliseFrame(window_, frame.id, {}, solveOptions(1).loss, solveOptions(1).still);
     history_.addMarginalised(std::move(conditional), window_);
     return;
   }
@@ -103,7 +103,7 @@ void VioEstimator::Impl::marginaliseOldestKeyframe() {
     gone.push_back(&feature);
   }
   FrameConditional conditional =
-      marginaliseFrame(window_, id, gone, options_.window.huber_px, solveOptions(1).still);
+      marginaliseFrame(window_, id, gone, solveOptions(1).loss, solveOptions(1).still);
   history_.addMarginalised(std::move(conditional), window_);
 }
 

@@ -7,8 +7,6 @@
 #include <array>
 #include <cmath>
 
-#include "parkade/geometry/robust.hpp"
-
 namespace parkade {
 namespace {
 
@@ -16,6 +14,7 @@ namespace {
 // with them the scale, to one side; the projection is smooth there.
 constexpr double kMinInverseDistance = -0.1;
 constexpr double kMaxInverseDistance = 20.0;
+constexpr double kBodyVelocityBend = 0.3;  // sigma, of Huber's loss
 // Whitened error that stands for an observation that cannot be projected at all.
 constexpr double kInvisibleCost = 50.0;
 
@@ -165,7 +164,7 @@ void LinearSystem::addMotion(const Window& window, const FactorSelection& select
       Matrix3x15d by_frame;
       const Eigen::Vector3d r = bodyVelocityResidual(frame, window.T_imu_vehicle, &by_frame);
       // Wheels slip and cars cross bumps: bounded influence here as well.
-      const RobustValue term = huber(r.squaredNorm(), huber_);
+      const RobustValue term = huber(r.squaredNorm(), kBodyVelocityBend);
       cost_ += 0.5 * term.rho;
       b_.segment<kState>(kState * j).noalias() += term.weight * by_frame.transpose() * r;
       H_.block<kState, kState>(kState * j, kState * j) +=
@@ -240,7 +239,7 @@ void LinearSystem::addFeature(const Window& window, WindowFeature& feature,
     }
     const double weight = 1.0 / observation.sigma_px;
     Eigen::Vector2d r = weight * (pixel - observedPixel(window, observation));
-    const RobustValue term = huber(r.squaredNorm(), huber_);
+    const RobustValue term = loss_(r.squaredNorm());
     cost_ += 0.5 * term.rho;
     const double root = std::sqrt(term.weight);
     r *= root;

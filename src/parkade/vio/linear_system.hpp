@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "parkade/geometry/robust.hpp"
 #include "parkade/vio/factors.hpp"
 #include "parkade/vio/reprojection.hpp"
 #include "parkade/vio/window.hpp"
@@ -33,7 +34,7 @@ struct FactorSelection {
 /// the last ones.
 class LinearSystem {
  public:
-  LinearSystem(double huber, const StillSigma& still) : huber_(huber), still_(still) {}
+  LinearSystem(const RobustLoss& loss, const StillSigma& still) : loss_(loss), still_(still) {}
 
   /// Evaluates residuals at the states and Jacobians at jacobianState(). Returns the cost.
   double linearise(const Window& window, const FactorSelection& selection);
@@ -95,7 +96,7 @@ class LinearSystem {
   }
   void addPair(int i, int j, const Matrix15d& hii, const Matrix15d& hji, const Matrix15d& hjj);
 
-  double huber_;
+  RobustLoss loss_;
   StillSigma still_;
   double cost_ = 0.0;
   int num_observations_ = 0;

@@ -77,8 +77,8 @@ std::vector<std::size_t> involvedFrames(const Window& window, const FactorSelect
 }  // namespace
 
 FrameConditional marginaliseFrame(Window& window, int frame_id,
-                                  const std::vector<WindowFeature*>& landmarks, double huber,
-                                  const StillSigma& still) {
+                                  const std::vector<WindowFeature*>& landmarks,
+                                  const RobustLoss& loss, const StillSigma& still) {
   const int found = window.indexOf(frame_id);
   PARKADE_CHECK(found >= 0, "frame {} is not in the window", frame_id);
   const auto index = static_cast<std::size_t>(found);
@@ -90,7 +90,7 @@ FrameConditional marginaliseFrame(Window& window, int frame_id,
 
   // 1. All terms, landmarks eliminated, as a quadratic about the points of linearisation. The frame
   // that leaves goes first, the globals last.
-  LinearSystem system(huber, still);
+  LinearSystem system(loss, still);
   system.linearise(window, selection);
   system.reduce(0.0);
   std::vector<std::size_t> order{index};

@@ -27,8 +27,8 @@ struct FrameConditional {
 /// their observations of that frame. Frames that the new prior refers to get their point of
 /// linearisation fixed. docs/math/marginalisation.md, eqs. (1) to (4).
 FrameConditional marginaliseFrame(Window& window, int frame_id,
-                                  const std::vector<WindowFeature*>& landmarks, double huber,
-                                  const StillSigma& still);
+                                  const std::vector<WindowFeature*>& landmarks,
+                                  const RobustLoss& loss, const StillSigma& still);
 
 /// Removes a frame that no prior refers to, and its observations; `imu` are the readings between
 /// its neighbours.

@@ -11,8 +11,8 @@ struct VioWindowOptions {
   int recent_frames = 3;
   int max_iterations = 2;
   int max_landmarks = 800;
-  double huber_px = 0.3;
-  double outlier_sigma = 3.5;
+  double cauchy = 0.7;
+  double outlier_sigma = 5.0;
 
   void visit(OptionVisitor& v) {
     v.field("keyframes", keyframes, "count", "Keyframes kept in the window.", 3, 40);
@@ -22,8 +22,9 @@ struct VioWindowOptions {
             1, 50);
     v.field("max_landmarks", max_landmarks, "count",
             "Landmarks in one solve over all cameras; bounds the time per frame set.", 20, 5000);
-    v.field("huber_px", huber_px, "sigma",
-            "Whitened reprojection error where the loss turns from square to linear.", 0.1, 100.0);
+    v.field("cauchy", cauchy, "sigma",
+            "Scale of the Cauchy loss of whitened reprojection errors: at it one counts half.", 0.1,
+            100.0);
     v.field("outlier_sigma", outlier_sigma, "sigma",
             "Observations that miss their landmark by more after a solve are removed.", 1.0, 100.0);
   }

@@ -86,8 +86,8 @@ SolveSummary solveWindow(Window& window, const std::vector<WindowFeature*>& feat
   if (window.frames.empty()) return summary;
   FactorSelection selection = FactorSelection::all(window);
   selection.features = features;
-  LinearSystem system(options.huber, options.still);
-  LinearSystem trial(options.huber, options.still);
+  LinearSystem system(options.loss, options.still);
+  LinearSystem trial(options.loss, options.still);
   Backup backup;
   double damping = 0.0;
   system.linearise(window, selection);
@@ -141,7 +141,7 @@ SolveSummary solveAtRest(Window& window, const std::vector<WindowFeature*>& feat
                          std::size_t first_free, const SolveOptions& options) {
   SolveSummary summary;
   FactorSelection selection = FactorSelection::all(window);
-  LinearSystem system(options.huber, options.still);
+  LinearSystem system(options.loss, options.still);
   // Without images nothing tells where the cameras sit: only gravity moves of the globals, else the
   // prior would pull the cameras away from what the window's pictures have shown.
   constexpr Eigen::Index kGravity = Window::kGravitySize;

@@ -246,7 +246,8 @@ TEST(WindowSolver, FindsTheMinimumThatCeresFinds) {
       const std::size_t second = a != t ? t : (a + 1) % x.size();
       problem.AddResidualBlock(
           new ceres::NumericDiffCostFunction<PixelCost, ceres::CENTRAL, 2, 16, 16, 3>(functor),
-          new ceres::HuberLoss(options.huber), x[a].data(), x[second].data(), landmarks[f].data());
+          new ceres::HuberLoss(options.loss.scale), x[a].data(), x[second].data(),
+          landmarks[f].data());
     }
   }
   ceres::Solver::Options ceres_options;
@@ -293,7 +294,8 @@ TEST_P(WindowGradient, IsThatOfTheCost) {
   FactorSelection selection = FactorSelection::all(window);
   selection.features = features;
   const StillSigma still;
-  LinearSystem system(1e9, still);
+  const RobustLoss loss{RobustLoss::Kernel::kCauchy, 0.6};
+  LinearSystem system(loss, still);
   system.linearise(window, selection);
   const auto costAt = [&](const Eigen::VectorXd& step) {
     Window other = window;
@@ -301,7 +303,7 @@ TEST_P(WindowGradient, IsThatOfTheCost) {
       other.frames[i].apply(step.segment<kState>(kState * static_cast<Eigen::Index>(i)));
     }
     other.applyGlobals(step.tail(window.globalSize()));
-    LinearSystem at(1e9, still);
+    LinearSystem at(loss, still);
     return at.linearise(other, selection);
   };
   const double h = 1e-6;
@@ -332,7 +334,7 @@ TEST(Marginalisation, PriorStandsForWhatLeft) {
     (feature->observations.front().frame_id == 0 ? gone : rest).push_back(feature);
   }
   const FrameConditional conditional =
-      marginaliseFrame(window, 0, gone, options.huber, options.still);
+      marginaliseFrame(window, 0, gone, options.loss, options.still);
   EXPECT_EQ(window.frames.front().id, 1);
   EXPECT_EQ(conditional.frame_ids.size() * 15 + 2,
             static_cast<std::size_t>(conditional.gain.cols()));
@@ -355,7 +357,7 @@ TEST(Marginalisation, PriorPullsBackAsTheFullProblemDoes) {
   for (WindowFeature* feature : features) {
     (feature->observations.front().frame_id == 0 ? gone : rest).push_back(feature);
   }
-  (void)marginaliseFrame(window, 0, gone, options.huber, options.still);
+  (void)marginaliseFrame(window, 0, gone, options.loss, options.still);
   disturb(window, 1e-3, 8);
   (void)solveWindow(window, rest, options);
   for (std::size_t i = 0; i < window.frames.size(); ++i) {
