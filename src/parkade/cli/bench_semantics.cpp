@@ -281,7 +281,9 @@ void addBenchSemantics(CLI::App& bench, int& exit_code) {
   command->add_flag("--fast", arguments->fast, "One sample per pixel instead of 2 x 2");
   command->add_option("--threads", arguments->threads, "Threads that draw [all processors]")
       ->check(CLI::Range(1, 256));
-  command->add_option("--set", arguments->settings, "An option below, as frames=20");
+  command->add_option("--set", arguments->settings, "An option below, as frames=20")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->footer(std::string(kSemanticsFooter) +
                   "\n\nOptions for --set (name, default, meaning):\n" +
                   describeOptions(asOptions(arguments->options)));

@@ -117,6 +117,9 @@ Result<FrameSet> readFrames(const Rig& rig, const std::vector<std::string>& imag
       return Error{fmt::format("--image {}: expected CAMERA=FILE with one of the rig's cameras: {}",
                                text, known)};
     }
+    if (!frames.images[static_cast<std::size_t>(camera)].empty()) {
+      return Error{fmt::format("--image {}: the camera has a picture already", text)};
+    }
     Result<cv::Mat> image = readImage(text.substr(equals + 1), false);
     if (!image) return image.error();
     const Camera& model = rig.cameras[static_cast<std::size_t>(camera)].camera;
@@ -189,6 +192,9 @@ int run(BevArguments& arguments) {
   if (arguments.source.empty() == arguments.rig.empty()) {
     return fail({"give either a sequence, or --rig with one --image per camera"});
   }
+  if (arguments.rig.empty() != arguments.images.empty()) {
+    return fail({"--rig and --image go together: --rig RIG.yaml --image cam0=FILE ..."});
+  }
   std::error_code code;
   std::filesystem::create_directories(arguments.out, code);
   if (code) {
@@ -216,12 +222,16 @@ void addBevCommand(CLI::App& app, int& exit_code) {
   command->add_option("--duration", arguments->duration_s, "Stop after this much, s; 0: at the end")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--rig", arguments->rig, "rig.yaml for single pictures");
-  command->add_option("--image", arguments->images, "CAMERA=FILE, once per camera, with --rig");
+  command->add_option("--image", arguments->images, "CAMERA=FILE, once per camera, with --rig")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_flag("--overlay", arguments->overlay,
                     "Lay the classes and objects that the network sees over the pictures");
   command->add_option("--network", arguments->network,
                       "Class map of another network for --overlay (docs/networks.md)");
-  command->add_option("--set", arguments->settings, "An option below, as metres_per_px=0.02");
+  command->add_option("--set", arguments->settings, "An option below, as metres_per_px=0.02")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->footer(std::string(kBevFooter) + "\n\nOptions for --set (name, default, meaning):\n" +
                   describeOptions(asOptions(arguments->options)));
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

@@ -86,9 +86,10 @@ Status runSequence(const RunArguments& arguments) {
   request.gray_beside = method == RunMethod::kFused;
   Result<OpenedSource> opened = openSource(request);
   if (!opened) return opened.error();
-  if (Status status = prepareRunFolder(arguments.out, arguments.force); !status) return status;
   auto run = MappingRun::create(opened->rig, options, arguments.threads, method);
   if (!run) return run.error();
+  // Last, for it removes what an earlier run left there.
+  if (Status status = prepareRunFolder(arguments.out, arguments.force); !status) return status;
 
   HealthLog health;
   (*run)->addObserver(&health);

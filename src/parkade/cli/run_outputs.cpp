@@ -31,6 +31,7 @@ namespace fs = std::filesystem;
 constexpr std::array<const char*, 10> kRunFiles = {
     "map.db",     "trajectory.tum", "trajectory_vio.tum", "trajectory_final.tum", "covariance.csv",
     "health.csv", "timing.json",    "metrics.json",       "config.yaml",          "report.html"};
+constexpr std::array<const char*, 3> kMapFiles = {"map.geojson", "map.osm", "map.png"};
 constexpr const char* kConfigHeading = "# Effective configuration of 'parkade run'";
 
 bool isRunFolder(const fs::path& folder) {
@@ -115,6 +116,13 @@ Status prepareRunFolder(const std::string& folder, bool force) {
   if (Status made = makeFolders(folder); !made) return made;
   for (const char* name : kRunFiles) fs::remove(fs::path(folder) / name, code);
   for (const char* name : kReportPictures) fs::remove(fs::path(folder) / name, code);
+  const fs::path exports = fs::path(folder) / "map";
+  for (const char* name : kMapFiles) fs::remove(exports / name, code);
+  for (const std::string_view layer : kGridLayerNames) {
+    for (const char* ending : {".pgm", ".yaml"}) {
+      fs::remove(exports / (std::string(layer) + ending), code);
+    }
+  }
   return {};
 }
 

@@ -47,6 +47,10 @@ TEST(Time, ConvertsBothWays) {
   EXPECT_EQ(fromSeconds(1.5), 1'500'000'000);
   EXPECT_EQ(fromSeconds(-0.1), -100'000'000);
   EXPECT_DOUBLE_EQ(toSeconds(-250'000'000), -0.25);
+  // What no integer holds stays on its side.
+  EXPECT_GT(fromSeconds(1e300), 0);
+  EXPECT_LT(fromSeconds(-1e300), 0);
+  EXPECT_EQ(fromSeconds(std::nan("")), 0);
 }
 
 TEST(Log, GoesThroughTheOneSink) {

@@ -117,6 +117,20 @@ TEST(YamlNode, ReadsAText) {
   EXPECT_EQ(bad.error().message.rfind("preset:", 0), 0U) << bad.error().message;
 }
 
+TEST(YamlNode, RefusesWhatYamlWouldDropOrNeverEnd) {
+  const auto problem = [](const char* text) {
+    const Result<YamlNode> root = openYamlText(text, "f.yaml");
+    return root.ok() ? std::string("none") : root.error().message;
+  };
+  EXPECT_EQ(problem("a: 1\nb: {c: 1}\n"), "none");
+  EXPECT_EQ(problem("x: &v [1, 2]\ny: *v\n"), "none");
+  EXPECT_THAT(problem("a: 1\nb: 2\na: 3\n"), HasSubstr("f.yaml:3: key 'a' stands twice"));
+  EXPECT_THAT(problem("a: &v\n  b: *v\n"), HasSubstr("an alias within itself"));
+  EXPECT_THAT(problem("a: &v [1, *v]\n"), HasSubstr("an alias within itself"));
+  EXPECT_THAT(problem("? [a, b]\n: 1\n"), HasSubstr("f.yaml:1: a key must be plain text"));
+  EXPECT_THAT(problem("a: 1\n---\nb: 2\n"), HasSubstr("second document"));
+}
+
 TEST(YamlNode, ReadsMatricesAndNamesWhatIsWrong) {
   const std::string path = ::testing::TempDir() + "parkade_yaml_test.yaml";
   std::ofstream(path) << "%YAML:1.0\n---\nflat: [1,0,0,1, 0,1,0,2, 0,0,1,3, 0,0,0,1]\n"

@@ -17,9 +17,13 @@ constexpr double toSeconds(TimeNs t_ns) {
   return static_cast<double>(t_ns) * 1e-9;
 }
 
-/// Nearest nanosecond of a duration in seconds.
+/// Nearest nanosecond of a duration in seconds. More than 100 years either way (no time is that
+/// long; an endless one stands for none) become these; NaN becomes 0.
 constexpr TimeNs fromSeconds(double seconds) {
+  constexpr double kLongest = 3.2e18;
   const double ns = seconds * 1e9;
+  if (!(ns > -kLongest)) return ns < 0.0 ? -static_cast<TimeNs>(kLongest) : 0;
+  if (ns > kLongest) return static_cast<TimeNs>(kLongest);
   return static_cast<TimeNs>(ns < 0.0 ? ns - 0.5 : ns + 0.5);
 }
 

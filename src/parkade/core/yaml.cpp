@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -23,6 +24,36 @@ std::string shown(const YAML::Node& node) {
   constexpr std::size_t kMaxShown = 60;
   if (text.size() > kMaxShown) text = text.substr(0, kMaxShown) + "...";
   return "'" + text + "'";
+}
+
+constexpr int kMaxDepth = 32;
+constexpr std::size_t kMaxNodes = 1'000'000;
+
+// What yaml-cpp takes and nobody means: keys twice (it drops one of them), keys that are no text,
+// and aliases of what they stand in or that multiply, which never end.
+Status checkTree(const YAML::Node& node, const std::string& path, int depth, std::size_t& nodes) {
+  const auto problem = [&](const YAML::Node& at, const std::string& what) {
+    return Error{fmt::format("{}:{}: {}", path, at.Mark().line + 1, what)};
+  };
+  if (depth > kMaxDepth || ++nodes > kMaxNodes) {
+    return problem(node, "nested too deeply, or an alias within itself; write the values out");
+  }
+  if (node.IsSequence()) {
+    for (const auto& child : node) {
+      if (Status status = checkTree(child, path, depth + 1, nodes); !status) return status;
+    }
+  }
+  if (!node.IsMap()) return {};
+  std::set<std::string> keys;
+  for (const auto& entry : node) {
+    if (!entry.first.IsScalar()) return problem(entry.first, "a key must be plain text");
+    const std::string& key = entry.first.Scalar();
+    if (!keys.insert(key).second) {
+      return problem(entry.first, fmt::format("key '{}' stands twice; keep one of them", key));
+    }
+    if (Status status = checkTree(entry.second, path, depth + 1, nodes); !status) return status;
+  }
+  return {};
 }
 
 }  // namespace
@@ -158,9 +189,16 @@ Result<YamlNode> openYamlText(std::string text, const std::string& path) {
   // OpenCV writes a directive that YAML does not know; blank it and keep the line count.
   if (text.rfind("%YAML:", 0) == 0) text.replace(0, text.find('\n'), "#");
   try {
-    YAML::Node root = YAML::Load(text);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1) {
+      return Error{fmt::format("{}:{}: a second document begins; one file holds one", path,
+                               documents[1].Mark().line + 1)};
+    }
+    const YAML::Node root = documents.empty() ? YAML::Node() : documents.front();
     if (!root.IsDefined() || root.IsNull())
       return Error{fmt::format("{}: the file is empty", path)};
+    std::size_t nodes = 0;
+    if (Status sound = checkTree(root, path, 0, nodes); !sound) return sound.error();
     return YamlNode{root, path, ""};
   } catch (const YAML::Exception& error) {
     return Error{fmt::format("{}:{}: not valid YAML: {}", path, error.mark.line + 1, error.msg)};

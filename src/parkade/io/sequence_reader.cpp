@@ -89,7 +89,7 @@ Status SequenceReader::load(const std::string& path, const SequenceReaderOptions
   }
   if (Status status = loadImages(*sequence, options); !status) return status;
   info_.name = path;
-  cut(options);
+  if (Status status = cut(options); !status) return status;
   startDecoding(options);
   return {};
 }
@@ -125,7 +125,7 @@ Status SequenceReader::loadImages(const std::string& sequence,
   return {};
 }
 
-void SequenceReader::cut(const SequenceReaderOptions& options) {
+Status SequenceReader::cut(const SequenceReaderOptions& options) {
   const auto span = [this](auto& rows, TimeNs& begin, TimeNs& end) {
     if (rows.empty()) return;
     begin = std::min(begin, rows.front().t_ns);
@@ -144,6 +144,13 @@ void SequenceReader::cut(const SequenceReaderOptions& options) {
   span_of_all(begin, end);
   const TimeNs from = begin + fromSeconds(options.start_s);
   const TimeNs to = options.duration_s > 0.0 ? from + fromSeconds(options.duration_s) : end;
+  if (!frames_.empty() && (from > frames_.back().t_ns || to < frames_.front().t_ns)) {
+    return Error{
+        fmt::format("{}: no pictures from {:g} s after its start{}; the recording lasts {:.1f} s",
+                    info_.name, options.start_s,
+                    options.duration_s > 0.0 ? fmt::format(", for {:g} s", options.duration_s) : "",
+                    toSeconds(end - begin))};
+  }
   keepBetween(imu_, from, to);
   keepBetween(wheel_, from, to);
   keepBetween(frames_, from, to);
@@ -151,6 +158,7 @@ void SequenceReader::cut(const SequenceReaderOptions& options) {
   info_.num_cameras = static_cast<int>(rig_.cameras.size());
   info_.num_frame_sets = static_cast<int>(frames_.size());
   info_.has_wheel = !wheel_.empty();
+  return {};
 }
 
 void SequenceReader::startDecoding(const SequenceReaderOptions& options) {

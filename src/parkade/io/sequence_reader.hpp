@@ -81,7 +81,7 @@ class SequenceReader : public SensorSource {
   SequenceReader() = default;
   Status load(const std::string& path, const SequenceReaderOptions& options);
   Status loadImages(const std::string& sequence, const SequenceReaderOptions& options);
-  void cut(const SequenceReaderOptions& options);
+  Status cut(const SequenceReaderOptions& options);
   void startDecoding(const SequenceReaderOptions& options);
   Result<bool> takeFrame(FrameSet& frame_set);
   void reportSkipped();

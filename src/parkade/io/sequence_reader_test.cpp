@@ -100,6 +100,16 @@ TEST_F(SequenceReaderTest, ThreadsChangeNothing) {
   }
 }
 
+TEST_F(SequenceReaderTest, ACutThatLeavesNothingIsAnError) {
+  SequenceReaderOptions options;
+  for (const double start : {1000.0, 1.4e18}) {
+    options.start_s = start;
+    const auto reader = SequenceReader::open(seq(), options);
+    ASSERT_FALSE(reader.ok());
+    EXPECT_THAT(reader.error().message, ::testing::HasSubstr("no pictures from"));
+  }
+}
+
 TEST_F(SequenceReaderTest, SubsetOfCamerasAndCut) {
   SequenceReaderOptions options;
   options.cameras = "cam1";

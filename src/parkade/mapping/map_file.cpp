@@ -156,7 +156,7 @@ void readGrid(const Database& database, ParkingMap& map) {
     const auto layer = enumAt<GridLayer>(tile, 0, kNumGridLayers, "layer");
     const std::int64_t x = tile.integer(1);
     const std::int64_t y = tile.integer(2);
-    if (std::abs(x) > kFarthestTile || std::abs(y) > kFarthestTile) {
+    if (x < -kFarthestTile || x > kFarthestTile || y < -kFarthestTile || y > kFarthestTile) {
       throw SqliteError(fmt::format("a tile lies out of range at ({}, {})", x, y));
     }
     map.grid.setTile(layer, {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)},
@@ -362,7 +362,8 @@ Status MapFile::save(ParkingMap& map) {
 }
 
 Result<ParkingMap> loadMap(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) {
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(path, code)) {
     return Error{path + ": there is no such map file"};
   }
   try {

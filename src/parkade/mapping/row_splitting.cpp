@@ -129,6 +129,7 @@ std::vector<std::size_t> splitSlots(std::vector<MapSlot>& slots,
       }
     }
   }
+  std::sort(replaced.begin(), replaced.end());  // rows come in any order
   return replaced;
 }
 

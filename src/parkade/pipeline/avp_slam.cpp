@@ -66,8 +66,9 @@ class AvpSlam::Impl {
                                           double sigma_rad) const;
 
   AvpSlamOptions options;
-  std::optional<PoseEstimate> odometry;
-  SE2 pose;                                                // of the EKF
+  std::optional<PoseEstimate> odometry;  // newest
+  std::optional<PoseEstimate> tracked;   // newest with a pose: odometry may start again
+  SE2 pose;                              // of the EKF
   Eigen::Matrix3d P = 1e-8 * Eigen::Matrix3d::Identity();  // right perturbation
   std::deque<View> views;
   double travelled = 0.0;
@@ -98,11 +99,13 @@ PoseEstimate AvpSlam::Impl::estimate() const {
 
 void AvpSlam::Impl::predict(const PoseEstimate& now) {
   if (now.health == Health::kInitialising) return;
-  if (!odometry || odometry->health == Health::kInitialising) {
+  if (!tracked) {
     pose = SE2::fromSE3(now.T_odom_vehicle);
+    tracked = now;
     return;
   }
-  const PlanarIncrement step = planarIncrement(*odometry, now, options.odometry);
+  const PlanarIncrement step = planarIncrement(*tracked, now, options.odometry);
+  tracked = now;
   const Eigen::Matrix3d F = step.T_before_after.inverse().adjoint();
   pose = pose * step.T_before_after;
   P = F * P * F.transpose() + step.covariance.topLeftCorner<3, 3>();

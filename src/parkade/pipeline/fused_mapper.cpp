@@ -42,15 +42,18 @@ PoseEstimate FusedMapper::Impl::estimate() const {
 }
 
 void FusedMapper::Impl::predict(const PoseEstimate& now) {
-  if (!odometry || odometry->health == Health::kInitialising) {
-    if (now.health == Health::kInitialising) return;
+  if (now.health == Health::kInitialising) return;
+  if (!tracked) {
     constexpr double kStart = 1e-8;  // the world frame is where the first pose says
     filter = PoseFilter({SE2::fromSE3(now.T_odom_vehicle), now.T_odom_vehicle.translation().z()},
                         kStart * Eigen::Matrix4d::Identity());
+    tracked = now;
     return;
   }
-  if (now.health == Health::kInitialising) return;
-  const PlanarIncrement step = planarIncrement(*odometry, now, options.odometry);
+  // After a start of its own the odometry goes on in its frame, as unsure as it then is.
+  if (odometry->health == Health::kInitialising) rows.forget();
+  const PlanarIncrement step = planarIncrement(*tracked, now, options.odometry);
+  tracked = now;
   filter.predict(step.T_before_after, step.dz, step.covariance);
   travelled += step.T_before_after.translation().norm();
   turned += std::abs(step.T_before_after.angle());

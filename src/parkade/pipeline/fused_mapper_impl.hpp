@@ -78,7 +78,8 @@ class FusedMapper::Impl {
   std::int64_t axes = -1;     // heading reference of the filter, once the compass has learned
   double axes_heading = 0.0;  // of that reference as it was then
   PoseFilter filter;
-  std::optional<PoseEstimate> odometry;
+  std::optional<PoseEstimate> odometry;  // newest
+  std::optional<PoseEstimate> tracked;   // newest with a pose: odometry may start again
   AnchoredHistory history;
   double travelled = 0.0;
   double turned = 0.0;

@@ -29,6 +29,8 @@ struct DriveOptions {
   bool labels = false;
   double blind_from = 1e9;  // no features between these ways, m
   double blind_to = 1e9;
+  double poseless_from = 1e9;  // the odometry starts again between these ways, m
+  double poseless_to = 1e9;
 };
 
 struct DriveResult {
@@ -89,6 +91,12 @@ DriveResult drive(const Plan& plan, const DriveOptions& options, std::uint64_t s
     vio.t_ns = t_ns;
     vio.T_odom_vehicle = odometry.toSE3();
     vio.health = Health::kTracking;
+    if (way >= options.poseless_from && way <= options.poseless_to) {
+      vio.health = Health::kInitialising;
+      vio.T_odom_vehicle = SE3();
+      EXPECT_EQ(mapper.addOdometry(vio).health, Health::kInitialising);
+      continue;
+    }
     PoseEstimate fused = mapper.addOdometry(vio);
     if (way < options.blind_from || way > options.blind_to) {
       fused = mapper.addSemantics(observer.observe(t_ns, poses[k], random, options.labels), {});
@@ -184,6 +192,17 @@ TEST(FusedMapper, SecondsWithoutFeaturesAreSurvived) {
   const DriveResult r = drive(makePlan(2, 60.0, 0.6, 4), options, 4);
   EXPECT_LE(r.fused_rmse, r.odometry_rmse);
   EXPECT_GT(r.statistics.loops, 5);
+}
+
+TEST(FusedMapper, GoesOnWhereTheOdometryStartsAgain) {
+  DriveOptions options;
+  options.poseless_from = 70.0;
+  options.poseless_to = 71.0;
+  const DriveResult r = drive(makePlan(2, 60.0, 0.6, 4), options, 4);
+  EXPECT_LE(r.fused_rmse, r.odometry_rmse);
+  EXPECT_LT(r.fused_worst, 1.0);
+  EXPECT_GT(r.statistics.loops, 5);
+  EXPECT_TRUE(findFaults(r.map).empty());
 }
 
 TEST(FusedMapper, SameCallsGiveTheSameBytes) {

@@ -153,13 +153,14 @@ Result<BevLabels> SegmentationNetwork::segment(const BevImage& bev) {
   cv::Mat& slot_line = result.slot_line;
   const Status status = impl_->run(image, result.labels, result.confidence, slot_line);
   if (!status) return status.error();
-  if (padded != bev.image.size()) {
+  if (size != bev.image.size() || padded != size) {
     const cv::Rect used(cv::Point(), size);
-    cv::resize(result.labels(used), result.labels, bev.image.size(), 0, 0, cv::INTER_NEAREST);
-    cv::resize(result.confidence(used), result.confidence, bev.image.size(), 0, 0,
+    cv::resize(result.labels(used).clone(), result.labels, bev.image.size(), 0, 0,
+               cv::INTER_NEAREST);
+    cv::resize(result.confidence(used).clone(), result.confidence, bev.image.size(), 0, 0,
                cv::INTER_NEAREST);
     if (!slot_line.empty()) {
-      cv::resize(slot_line(used), slot_line, bev.image.size(), 0, 0, cv::INTER_NEAREST);
+      cv::resize(slot_line(used).clone(), slot_line, bev.image.size(), 0, 0, cv::INTER_NEAREST);
     }
   }
   tellStrokesFromArrows(slot_line, bev.geometry.metres_per_px, result.labels);

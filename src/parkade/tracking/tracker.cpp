@@ -133,7 +133,12 @@ TrackSet Tracker::Impl::track(const FrameSet& frames, const MotionPrior& prior) 
 
 void Tracker::Impl::checkShared() {
   for (const Pair& pair : pairs_) {
-    if (pair.from > pair.to || !camera(pair.from).ok() || !camera(pair.to).ok()) continue;
+    if (!camera(pair.from).ok() || !camera(pair.to).ok()) continue;
+    // Most pairs stand both ways round: once is enough.
+    const auto mirrored = [&](const Pair& other) {
+      return other.from == pair.to && other.to == pair.from;
+    };
+    if (pair.from > pair.to && std::any_of(pairs_.begin(), pairs_.end(), mirrored)) continue;
     const double focal = camera(pair.to).camera().camera.focalLength();
     std::vector<std::pair<std::uint64_t, Eigen::Vector2d>> wrong;
     for (const FeatureView& view : camera(pair.to).views()) {

@@ -239,7 +239,7 @@ void VioEstimator::Impl::updateHealth(const TrackSet& tracks, const GateResult& 
     restart("the estimate diverged");
     return;
   }
-  if (solved_landmarks_ >= kMinTrackedLandmarks) last_vision_ns_ = newest.t_ns;
+  if (solved_landmarks_ >= kMinTrackedLandmarks || still_) last_vision_ns_ = newest.t_ns;
   const double blind = toSeconds(newest.t_ns - last_vision_ns_);
   const double gap = newest.imu ? newest.imu->gapDuration() : 0.0;
   health_ = Health::kTracking;

@@ -56,7 +56,7 @@ bool VioEstimator::Impl::wantsKeyframe(std::size_t index) const {
   if (seen == 0) return false;
   // The last good frame before darkness keeps what it saw.
   if (continued < 0.4 * seen) return true;
-  if (shared < options_.keyframe.min_overlap * seen) return true;
+  if (shared == 0 || shared < options_.keyframe.min_overlap * seen) return true;
   if (median(std::move(parallax)) > options_.keyframe.parallax_deg * kDegree) return true;
   if ((frame.state.p_odom - keyframe.state.p_odom).norm() > options_.keyframe.distance_m) {
     return true;
