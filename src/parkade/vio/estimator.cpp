@@ -178,7 +178,8 @@ void VioEstimator::Impl::optimise(const SolveOptions& options) {
   if (summary.has_covariance) {
     newest_covariance_ = summary.newest_covariance;
     global_covariance_ = summary.global_covariance;
-    if (options_.calibration.learn_sigmas && !held) {
+    // The trials of a start would learn from each other.
+    if (options_.calibration.learn_sigmas && initialised_ && !held) {
       learnCalibrationSpread(window_, global_covariance_);
     }
   }

@@ -63,6 +63,8 @@ class VioEstimator::Impl {
   [[nodiscard]] std::optional<Eigen::Vector3d> wheelVelocity(const NavState& first) const;
   void enterWindow(const std::vector<NavState>& states, std::size_t first, const ImuBias& bias,
                    const StartPrior& prior);
+  /// The cameras stand as they were told, or as the run before a restart left them.
+  void forgetCalibration();
   void restart(const std::string& reason);
   /// Moves states of a start about their own origin to where the last run of the window ended.
   void continueFromLast(std::vector<NavState>& states, StartPrior& prior) const;

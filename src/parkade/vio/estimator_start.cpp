@@ -165,6 +165,7 @@ bool VioEstimator::Impl::startInMotion() {
   window_.prior = {};
   window_.start.frame_id = -1;
   features_.clear();
+  forgetCalibration();
   return false;
 }
 
@@ -261,6 +262,12 @@ void VioEstimator::Impl::enterWindow(const std::vector<NavState>& states, std::s
   window_.start.frame_id = window_.frames.front().id;
   window_.start.state = window_.frames.front().state;
   window_.start.bias = bias;
+  forgetCalibration();
+  window_.gravity = WindowGravity{};
+  window_.gravity.vector = options_.gravity * prior.gravity.normalized();
+}
+
+void VioEstimator::Impl::forgetCalibration() {
   for (std::size_t c = 0; c < window_.refinements.size(); ++c) {
     CameraRefinement& refinement = window_.refinements[c];
     window_.cameras[c].T_imu_cam = refinement.prior_T_imu_cam;
@@ -268,8 +275,6 @@ void VioEstimator::Impl::enterWindow(const std::vector<NavState>& states, std::s
     refinement.linearised = false;
     refinement.delta.setZero();
   }
-  window_.gravity = WindowGravity{};
-  window_.gravity.vector = options_.gravity * prior.gravity.normalized();
 }
 
 void VioEstimator::Impl::continueFromLast(std::vector<NavState>& states, StartPrior& prior) const {

@@ -81,7 +81,10 @@ void VioEstimator::Impl::removeFrame(std::size_t index) {
     history_.addMarginalised(std::move(conditional), window_);
     return;
   }
-  history_.addDropped(frame, before);
+  // Relative to a frame that stays: one that waits for the end of a rest may be dropped later.
+  std::size_t lasting = index - 1;
+  while (lasting > 0 && !window_.frames[lasting].keyframe) --lasting;
+  history_.addDropped(frame, window_.frames[lasting]);
   const Preintegration sum =
       readings_.sumBetween(before.t_ns, after.t_ns, noise_, before.bias, gap_ns_);
   dropFrame(window_, frame.id, sum);

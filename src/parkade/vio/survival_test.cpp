@@ -165,6 +165,51 @@ TEST(VioSurvival, ImuGapsUpToTheLimitAndBeyond) {
   }
 }
 
+TEST(VioSurvival, RecordingPausesForManySeconds) {
+  for (const double pause : {6.0, 60.0, 600.0, 36000.0}) {
+    SimulatedDrive drive = shortDrive();
+    const TimeNs first = drive.frames.front().t_ns;
+    const TimeNs later = fromSeconds(pause);
+    const auto pauses = [&](auto& stamped) {
+      for (auto& s : stamped) {
+        if (toSeconds(s.t_ns - first) > 5.0) s.t_ns += later;
+      }
+    };
+    // The car stands for a while and nobody records.
+    pauses(drive.imu);
+    pauses(drive.frames);
+    renameAfter(drive, 5.0 + pause, -1);
+    const auto estimates = run(drive);
+    EXPECT_EQ(estimates.back().health, Health::kTracking) << pause;
+    EXPECT_TRUE(estimates.back().T_odom_vehicle.translation().allFinite()) << pause;
+  }
+}
+
+TEST(VioSurvival, FinalTrajectoryHasEveryFrameOfAShortStop) {
+  for (const double stop : {0.4, 0.6, 0.8, 1.1, 1.5}) {
+    TrackSimulatorOptions options;
+    options.seed = 4;
+    options.length = 16.0;
+    options.stops = {8.0};
+    options.stop_duration = stop;
+    options.tracks_per_camera = 60;
+    const SimulatedDrive drive = simulateDrive(testing::surroundRig(), options);
+    VioEstimator estimator(drive.rig, VioOptions{});
+    const std::vector<PoseEstimate> estimates = runDrive(drive, estimator);
+    const Trajectory last = estimator.finalTrajectory();
+    std::size_t delivered = 0;
+    for (const PoseEstimate& e : estimates) delivered += e.health != Health::kInitialising ? 1 : 0;
+    EXPECT_GE(last.size(), delivered) << stop;
+    std::size_t k = 0;
+    for (const PoseEstimate& e : estimates) {
+      if (e.health == Health::kInitialising) continue;
+      while (k < last.size() && last[k].t_ns < e.t_ns) ++k;
+      ASSERT_LT(k, last.size()) << stop;
+      EXPECT_EQ(last[k].t_ns, e.t_ns) << stop;
+    }
+  }
+}
+
 TEST(VioSurvival, PassingCarFillsOneCamera) {
   // All features of one side camera move with a car that drives by: they agree with each other.
   SimulatedDrive drive = shortDrive();

@@ -176,7 +176,13 @@ Matrix15d sqrtInformation(const Preintegration& imu) {
   covariance.diagonal().segment<3>(Preintegration::kVelocity).array() += 1e-12;
   covariance.diagonal().segment<3>(Preintegration::kBiasGyro).array() += 1e-16;
   covariance.diagonal().segment<3>(Preintegration::kBiasAccel).array() += 1e-14;
-  const Eigen::LLT<Matrix15d> llt(covariance);
+  Eigen::LLT<Matrix15d> llt(covariance);
+  // After seconds without readings position, velocity and biases are correlated to the last digit.
+  for (double loading = 1e-12; llt.info() != Eigen::Success && loading < 1e-3; loading *= 10.0) {
+    Matrix15d loaded = covariance;
+    loaded.diagonal() *= 1.0 + loading;
+    llt.compute(loaded);
+  }
   PARKADE_CHECK(llt.info() == Eigen::Success, "covariance of {} s of IMU readings is not positive",
                 imu.duration());
   return llt.matrixL().solve(Matrix15d::Identity());
