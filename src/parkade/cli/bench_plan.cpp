@@ -91,8 +91,10 @@ Status addOwn(const PaperBenchOptions& options, BenchPlan& plan) {
   if (!options.cameras.empty()) {
     int first = 0;
     int last = 0;
-    if (std::sscanf(options.cameras.c_str(), "%d..%d", &first, &last) != 2 || first < 1 ||
-        last < first || last > 16) {
+    int read = 0;
+    if (std::sscanf(options.cameras.c_str(), "%d..%d%n", &first, &last, &read) != 2 ||
+        read != static_cast<int>(options.cameras.size()) || first < 1 || last < first ||
+        last > 16) {
       return Error{
           fmt::format("bench: --cameras {}: expected FIRST..LAST, as 1..6", options.cameras)};
     }

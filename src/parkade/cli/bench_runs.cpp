@@ -48,9 +48,19 @@ std::string keyOf(const BenchVariant& variant, const std::string& cameras,
                   const std::string& sequence, const std::string& trajectory) {
   std::string text = variant.run_method + "\n" + cameras + "\n";
   for (const std::string& setting : variant.settings) text += setting + "\n";
-  text += textOf(joinPath(sequence, "spec.yaml"));
+  for (const char* file : {"spec.yaml", "rig.yaml", "truth/garage.json", "truth/agents.csv"}) {
+    text += textOf(joinPath(sequence, file));
+  }
+  const Result<std::string> reference = findReference(sequence);
+  if (reference) text += textOf(*reference);
   if (!variant.import_folder.empty()) text += textOf(trajectory);
   return fmt::format("{:016x}", hashOf(text, programHash()));
+}
+
+bool isKept(const Json& mark, const std::string& key) {
+  if (!mark.is_object() || !mark.contains("run") || !mark.contains("key")) return false;
+  const Json& run = mark["run"];
+  return mark["key"] == key && run.is_object() && run.contains("status") && run["status"] == "done";
 }
 
 void flatten(const Json& json, const std::string& path, std::map<std::string, double>& figures) {
@@ -156,6 +166,9 @@ Result<std::string> camerasOf(const std::string& sequence, int count) {
   if (!rig) return rig.error();
   std::vector<std::string> names;
   for (const RigCamera& camera : rig->cameras) names.push_back(camera.name);
+  if (count > static_cast<int>(names.size())) {
+    return Error{fmt::format("the rig has {} cameras, {} were asked for", names.size(), count)};
+  }
   return pickCameras(names, count);
 }
 
@@ -184,7 +197,7 @@ JudgedRun performRun(const PaperBenchOptions& options, const BenchDrive& drive,
   const std::string key = keyOf(variant, *cameras, sequence, run.trajectory);
   const std::string mark = joinPath(run.folder, "bench.json");
   Json before = Json::parse(textOf(mark), nullptr, false);
-  if (!options.again && before.is_object() && before.value("key", "") == key) {
+  if (!options.again && isKept(before, key)) {
     run.json = std::move(before["run"]);
     run.kept = true;
     readRecord(run);

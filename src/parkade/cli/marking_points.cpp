@@ -76,7 +76,9 @@ Result<std::vector<Marked>> readAnnotations(const std::string& path) {
     for (std::string box; words >> box;) {
       double x0 = 0.0, y0 = 0.0, x1 = 0.0, y1 = 0.0;
       int kind = 0;
-      if (std::sscanf(box.c_str(), "%lf,%lf,%lf,%lf,%d", &x0, &y0, &x1, &y1, &kind) != 5) {
+      int read = 0;
+      if (std::sscanf(box.c_str(), "%lf,%lf,%lf,%lf,%d%n", &x0, &y0, &x1, &y1, &kind, &read) != 5 ||
+          read != static_cast<int>(box.size())) {
         return Error{fmt::format("{}:{}: '{}' is no box x0,y0,x1,y1,class", path, number, box)};
       }
       if (kind == 0) one.points.emplace_back(0.5 * (x0 + x1), 0.5 * (y0 + y1));

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/eval/evaluation.hpp"
 
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -63,7 +64,15 @@ void addNotes(Evaluation& result) {
 
 Result<Evaluation> evaluate(const Trajectory& estimate, const Trajectory& reference,
                             const EvaluationOptions& options) {
-  auto pairs = associate(estimate, reference, options.association);
+  const AssociationOptions& matching = options.association;
+  if (std::isnan(matching.tolerance_s + matching.max_gap_s + options.rpe.delta) ||
+      !std::isfinite(matching.offset_s)) {
+    return Error{fmt::format(
+        "tolerance {} s, offset {} s, largest gap {} s, distance {} of pairs: expected "
+        "numbers",
+        matching.tolerance_s, matching.offset_s, matching.max_gap_s, options.rpe.delta)};
+  }
+  auto pairs = associate(estimate, reference, matching);
   if (!pairs) return pairs.error();
   Evaluation result;
   result.options = options;

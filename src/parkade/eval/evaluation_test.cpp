@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "parkade/eval/test_support.hpp"
@@ -130,6 +132,20 @@ TEST(Evaluation, NotesWhatIsNotDetermined) {
   const auto one = evaluate(straight(1), straight(1));
   ASSERT_TRUE(one.ok());
   EXPECT_EQ(one->ape.max, 0.0);
+}
+
+TEST(Evaluation, RefusesWhatIsNoNumber) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  std::array<EvaluationOptions, 4> options;
+  options[0].association.tolerance_s = nan;
+  options[1].association.offset_s = nan;
+  options[2].association.max_gap_s = nan;
+  options[3].rpe.delta = nan;
+  for (const EvaluationOptions& one : options) {
+    const auto e = evaluate(straight(10), straight(10), one);
+    ASSERT_FALSE(e.ok());
+    EXPECT_THAT(e.error().message, HasSubstr("expected numbers"));
+  }
 }
 
 TEST(Evaluation, RefusesUnknownAlignment) {

@@ -37,6 +37,16 @@ class Descriptor {
   int descriptor_;
 };
 
+bool writeAll(int descriptor, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+  }
+  return true;
+}
+
 }  // namespace
 
 Result<std::string> readFile(const std::string& path) {
@@ -61,20 +71,24 @@ Result<std::string> readFile(const std::string& path) {
 }
 
 Status writeFileAtomic(const std::string& path, std::string_view bytes) {
-  const std::string temporary = path + ".tmp";
+  struct stat status {};
+  const bool exists = ::stat(path.c_str(), &status) == 0;
+  if (exists && !S_ISREG(status.st_mode)) {
+    // A device or a pipe takes bytes as they come; a folder is refused here.
+    Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+    if (!file.ok() || !writeAll(file.get(), bytes) || file.close() != 0) {
+      return systemError(path, "cannot write the file");
+    }
+    return {};
+  }
+  std::error_code code;
+  // What a link points to is written, the link stays.
+  const std::string target = exists ? std::filesystem::canonical(path, code).string() : path;
+  const std::string temporary = target + ".tmp";
   Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
   if (!file.ok()) return systemError(path, "cannot write the file");
-  while (!bytes.empty()) {
-    const ssize_t count = ::write(file.get(), bytes.data(), bytes.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) {
-      const Error error = systemError(path, "cannot write the file");
-      ::unlink(temporary.c_str());
-      return error;
-    }
-    bytes.remove_prefix(static_cast<std::size_t>(count));
-  }
-  if (file.close() != 0 || ::rename(temporary.c_str(), path.c_str()) != 0) {
+  if (!writeAll(file.get(), bytes) || file.close() != 0 ||
+      ::rename(temporary.c_str(), target.c_str()) != 0) {
     const Error error = systemError(path, "cannot write the file");
     ::unlink(temporary.c_str());
     return error;

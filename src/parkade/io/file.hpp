@@ -13,7 +13,9 @@ namespace parkade {
 Result<std::string> readFile(const std::string& path);
 
 /// Writes a file whole or not at all: the bytes go to PATH.tmp, which then takes the name. Whoever
-/// finds PATH finds all of it, even where the program was killed. Fails with the system's reason.
+/// finds PATH finds all of it, even where the program was killed. A link stays and what it points
+/// to is written; a device or a pipe (/dev/stdout) is written to as it is. Fails with the system's
+/// reason.
 Status writeFileAtomic(const std::string& path, std::string_view bytes);
 
 /// Makes a folder and those above it. Fails with the system's reason.

@@ -18,6 +18,15 @@ TimeNs medianStep(const std::vector<TimeNs>& t_ns) {
   return median(std::move(steps));
 }
 
+TimeNs usualJoinTolerance(const std::vector<std::vector<TimeNs>>& stamps) {
+  TimeNs tolerance = 5 * kNsPerMs;
+  for (const std::vector<TimeNs>& camera : stamps) {
+    const TimeNs period = medianStep(camera);
+    if (period > 0) tolerance = std::min(tolerance, period / 2);
+  }
+  return tolerance;
+}
+
 Result<std::vector<JoinedFrame>> joinFrames(const std::vector<std::vector<TimeNs>>& stamps,
                                             TimeNs tolerance) {
   for (std::size_t camera = 0; camera < stamps.size(); ++camera) {

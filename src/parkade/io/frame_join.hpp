@@ -24,6 +24,9 @@ struct JoinedFrame {
 Result<std::vector<JoinedFrame>> joinFrames(const std::vector<std::vector<TimeNs>>& stamps,
                                             TimeNs tolerance);
 
+/// 5 ms, or half the period of the fastest camera where that is less.
+TimeNs usualJoinTolerance(const std::vector<std::vector<TimeNs>>& stamps);
+
 /// Median step of increasing stamps; 0 for less than two.
 TimeNs medianStep(const std::vector<TimeNs>& t_ns);
 

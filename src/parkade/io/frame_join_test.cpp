@@ -32,6 +32,13 @@ TEST(FrameJoin, RefusesAToleranceAboveHalfThePeriod) {
   EXPECT_TRUE(joinFrames({{0, 10, 20}, {0, 100, 200}}, 5).ok());
 }
 
+TEST(FrameJoin, UsualToleranceSuitsFastCameras) {
+  const TimeNs ms = kNsPerMs;
+  EXPECT_EQ(usualJoinTolerance({}), 5 * ms);
+  EXPECT_EQ(usualJoinTolerance({{0, 100 * ms, 200 * ms}, {7}}), 5 * ms);
+  EXPECT_EQ(usualJoinTolerance({{0, 100 * ms, 200 * ms}, {0, 4 * ms, 8 * ms}}), 2 * ms);
+}
+
 TEST(FrameJoin, StampsNeverGoBack) {
   // A jittering camera: 0 joins 5 of the other, the mean 2 lies after the lone image at 1.
   const auto frames = joinFrames({{0, 1, 50, 100, 150}, {5, 55, 105, 155}}, 5);

@@ -36,7 +36,7 @@ void keepBetween(std::vector<Row>& rows, TimeNs begin, TimeNs end) {
 }
 
 Status checkRanges(const SequenceReaderOptions& options) {
-  const bool good = options.join_tolerance_ms >= 0.0 && options.start_s >= 0.0 &&
+  const bool good = options.join_tolerance_ms >= -1.0 && options.start_s >= 0.0 &&
                     options.duration_s >= 0.0 && options.decode_threads >= 0 &&
                     options.decode_ahead >= 1;
   if (good) return {};
@@ -118,8 +118,10 @@ Status SequenceReader::loadImages(const std::string& sequence,
     camera.time_offset_ns = 0;
     counts_.push_back({camera.name, 0, 0, 0});
   }
-  Result<std::vector<JoinedFrame>> frames =
-      joinFrames(image_t_ns_, fromSeconds(options.join_tolerance_ms * 1e-3));
+  const TimeNs tolerance = options.join_tolerance_ms >= 0.0
+                               ? fromSeconds(options.join_tolerance_ms * 1e-3)
+                               : usualJoinTolerance(image_t_ns_);
+  Result<std::vector<JoinedFrame>> frames = joinFrames(image_t_ns_, tolerance);
   if (!frames) return Error{fmt::format("{}: {}", sequence, frames.error().message)};
   frames_ = std::move(*frames);
   return {};

@@ -19,7 +19,7 @@ struct SequenceReaderOptions {
   std::string cameras;
   bool gray = true;
   bool gray_beside = false;
-  double join_tolerance_ms = 5.0;
+  double join_tolerance_ms = -1.0;
   bool tolerate_stamps = false;
   bool require_imu = true;
   double start_s = 0.0;
@@ -32,8 +32,9 @@ struct SequenceReaderOptions {
     v.field("gray", gray, "Decode images as gray (true) or as BGR colour (false).");
     v.field("gray_beside", gray_beside, "Decode colour images as gray as well.");
     v.field("join_tolerance_ms", join_tolerance_ms, "ms",
-            "Images of different cameras this close are one instant; at most half a period.", 0.0,
-            1000.0);
+            "Images of different cameras this close are one instant; at most half a period. -1: 5, "
+            "or half a period where less.",
+            -1.0, 1000.0);
     v.field("tolerate_stamps", tolerate_stamps,
             "Repair stamps that go backwards or repeat (docs/formats.md) instead of refusing.");
     v.field("require_imu", require_imu, "Refuse a sequence without imu0.");

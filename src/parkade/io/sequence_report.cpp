@@ -28,7 +28,6 @@ constexpr double kGravity = 9.81;
 constexpr double kGravityTolerance = 0.3;  // bias, scale and latitude of any sane accelerometer
 constexpr double kRateTolerance = 0.05;
 constexpr double kGapSteps = 1.5;
-constexpr TimeNs kJoinTolerance = 5 * kNsPerMs;  // the reader's default
 
 // Rows that a reader would use: all, or what a repair leaves.
 std::vector<std::size_t> usableRows(const std::vector<TimeNs>& t_ns) {
@@ -264,11 +263,7 @@ void Describer::describeCamera(const RigCamera& camera) {
 
 void Describer::describeFrames() {
   if (image_t_ns_.empty()) return;
-  TimeNs tolerance = kJoinTolerance;
-  for (const std::vector<TimeNs>& stamps : image_t_ns_) {
-    const TimeNs period = medianStep(stamps);
-    if (period > 0) tolerance = std::min(tolerance, period / 2);
-  }
+  const TimeNs tolerance = usualJoinTolerance(image_t_ns_);
   const Result<std::vector<JoinedFrame>> frames = joinFrames(image_t_ns_, tolerance);
   if (!frames || frames->empty()) return;
   report_.frame_sets = frames->size();

@@ -282,7 +282,10 @@ void SlotRegistry::completeRows(TimeNs now_ns, const std::vector<MapObject>& obj
       parkade::completeRows(m.seenSlots(now_ns, objects), objects, grid, m.options.rows);
   m.replaced = std::move(rows.replaced);
   for (MapSlot& slot : rows.added) {
-    if (!m.isPlausible(slot, objects, driven)) continue;
+    if (!m.isPlausible(slot, objects, driven)) {
+      std::erase(m.replaced, slot.id);  // what was told and cannot be moved stays as it is
+      continue;
+    }
     const auto same = std::find_if(before.begin(), before.end(), [&](const MapSlot& other) {
       constexpr double kSame = 0.5;
       return overlapShare(slot.corners, other.corners) > kSame;
