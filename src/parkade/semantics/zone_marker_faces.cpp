@@ -171,18 +171,21 @@ std::vector<ZoneMarkerSight> find(const cv::Mat& labels, const cv::Mat& image, c
     const auto straightened = [&](const std::vector<FittedFace>& fitted) {
       std::vector<ZoneMarkerFace> out;
       for (const FittedFace& face : fitted) {
-        if (!found->sight.legible || faces >= options.max_faces) break;
+        if (!found->sight.legible) break;
         if (face.slant() > options.max_slant_deg * M_PI / 180.0) continue;
         ZoneMarkerFace straight = straighten(image, found->view, middleOf(face, search.share),
                                              found->marker.middle / search.share);
         if (straight.height_px < options.min_height_px || straight.patch.empty()) continue;
         out.push_back(std::move(straight));
-        ++faces;
       }
       return out;
     };
-    found->sight.faces = straightened(found->marker.faces);
-    found->sight.other_faces = straightened(found->marker.other_faces);
+    found->sight.one_face = found->marker.faces.size() == 1;
+    if (faces < options.max_faces) {
+      found->sight.faces = straightened(found->marker.faces);
+      found->sight.other_faces = straightened(found->marker.other_faces);
+      faces += static_cast<int>(found->sight.faces.size());
+    }
     sights.push_back(std::move(found->sight));
   }
   return sights;

@@ -55,8 +55,9 @@ struct ZoneMarkerSight {
   bool legible = false;       ///< not cut at its sides: its text may be whole
   cv::Rect box;               ///< in the label picture
   std::vector<ZoneMarkerFace> faces;  ///< from left to right; those that can be read
-  /// The other way to part the outline into faces, where it explains it nearly as well.
+  /// The other way to part the outline into faces.
   std::vector<ZoneMarkerFace> other_faces;
+  bool one_face = true;  ///< `faces` take it for a single face, `other_faces` for two; or reversed
 };
 
 /// Finds zone markers in the labels of a camera's picture and straightens their faces.

@@ -137,8 +137,7 @@ FittedMarker fitMarker(const std::vector<MarkerColumn>& columns, double x_left, 
     Fit corner = fits.corner();
     corner.cost += kCornerPrior;
     if (corner.cost < fit.cost) std::swap(fit, corner);
-    constexpr double kNearly = 12.0;  // chi-square
-    if (corner.cost < fit.cost + kNearly) marker.other_faces = fits.facesOf(corner);
+    if (std::isfinite(corner.cost)) marker.other_faces = fits.facesOf(corner);
   }
   marker.faces = fits.facesOf(fit);
   const double x = 0.5 * (x_left + x_right);

@@ -29,8 +29,7 @@ struct FittedFace {
 
 struct FittedMarker {
   std::vector<FittedFace> faces;  ///< one, or two that meet at the pillar's edge; left to right
-  /// The faces of the other model where it explains the outline nearly as well (chi-square 12
-  /// more).
+  /// Those of the other model, where it can be: labels' outlines are not as exact as their pixels.
   std::vector<FittedFace> other_faces;
   double middle = 0.0;            ///< height of its middle over the camera, in marker heights
   double height_at_middle = 0.0;  ///< h at the outline's middle column

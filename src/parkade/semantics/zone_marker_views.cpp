@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/semantics/zone_marker_views.hpp"
 
-#include <algorithm>
 #include <utility>
+
+#include "parkade/semantics/zone_text_parting.hpp"
 
 namespace parkade {
 namespace {
@@ -19,22 +20,26 @@ Result<std::vector<ReadFace>> readEach(const std::vector<ZoneMarkerFace>& faces,
   return read;
 }
 
-// Probability of the surest face's text.
-double certainty(const std::vector<ReadFace>& faces) {
-  double best = 0.0;
-  for (const ReadFace& face : faces) best = std::max(best, certaintyOf(face.readings));
-  return best;
+FaceReadings readingsOf(const std::vector<ReadFace>& faces) {
+  FaceReadings readings;
+  for (const ReadFace& face : faces) readings.push_back(face.readings);
+  return readings;
 }
 
 }  // namespace
 
 Result<std::vector<ReadFace>> readFaces(const ZoneMarkerSight& sight, ZoneTextReader& reader,
                                         const std::string& only) {
-  constexpr double kSure = 0.9;
   Result<std::vector<ReadFace>> first = readEach(sight.faces, reader, only);
-  if (!first || sight.other_faces.empty() || certainty(*first) >= kSure) return first;
-  Result<std::vector<ReadFace>> other = readEach(sight.other_faces, reader, only);
-  return !other || certainty(*other) > certainty(*first) ? other : first;
+  if (!first || sight.other_faces.empty()) return first;
+  const FaceReadings likelier = readingsOf(*first);
+  if (isSettled(likelier, sight.one_face)) return first;
+  Result<std::vector<ReadFace>> second = readEach(sight.other_faces, reader, only);
+  if (!second) return second;
+  const FaceReadings other = readingsOf(*second);
+  const bool one =
+      sight.one_face ? showsOneFace(likelier, other, true) : showsOneFace(other, likelier, false);
+  return one == sight.one_face ? first : second;
 }
 
 Result<std::vector<ZoneMarkerView>> viewsOf(const std::vector<ZoneMarkerSight>& sights,

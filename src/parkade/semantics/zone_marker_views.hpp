@@ -19,9 +19,9 @@ struct ReadFace {
   std::vector<TextReading> readings;
 };
 
-/// Reads a sight's faces, from the characters `only` (empty: all). Where none is read surely and
-/// its outline could be parted otherwise, those faces are read too, and the surer way counts. Fails
-/// as the reader does.
+/// Reads a sight's faces, from the characters `only` (empty: all). Where that leaves a question and
+/// its outline could be parted otherwise, those faces are read too, and what is read decides
+/// (zone_text_parting.hpp). Fails as the reader does.
 Result<std::vector<ReadFace>> readFaces(const ZoneMarkerSight& sight, ZoneTextReader& reader,
                                         const std::string& only = {});
 
