@@ -10,6 +10,7 @@
 #include "parkade/core/check.hpp"
 #include "parkade/core/units.hpp"
 #include "parkade/mapping/column_feet.hpp"
+#include "parkade/mapping/unseen_ground.hpp"
 #include "parkade/pipeline/fused_mapper_impl.hpp"
 
 namespace parkade {
@@ -214,6 +215,9 @@ ParkingMap FusedMapper::map(const std::string& name) const {
   map.name = name;
   map.grid = m.global.grid();
   map.objects = m.objects.objects();
+  std::vector<SE2> way;
+  for (const StampedPose& pose : finalTrajectory()) way.push_back(SE2::fromSE3(pose.T_world_body));
+  forgetUnseenGround(way, m.options.global_map.evidence.range_m, map.grid);
   trimColumnFeet(map.objects, map.grid);
   completeColumnFeet(map.objects, map.grid);
   map.slots = m.slots.slots(m.last_t_ns, map.objects);

@@ -12,6 +12,7 @@
 #include "parkade/geometry/se2.hpp"
 #include "parkade/pipeline/stitched_views.hpp"
 #include "parkade/semantics/segmentation.hpp"
+#include "parkade/types/level_frame.hpp"
 
 namespace parkade {
 
@@ -36,6 +37,7 @@ struct SemanticFrontEnd::Impl {
   struct View {
     GroundPlaneEstimate floor;
     PoseEstimate now;
+    std::vector<Eigen::Vector3d> raised;  // key points above the floor, levelled vehicle frame
   };
   std::vector<SE3> cameras;    // where they are taken to sit
   std::optional<View> newest;  // of the last addOdometry()
@@ -82,7 +84,9 @@ bool SemanticFrontEnd::addOdometry(const PoseEstimate& odometry,
                                    const std::vector<Landmark>& landmarks) {
   Impl& m = *impl_;
   if (odometry.health == Health::kInitialising) return false;
-  m.newest = {m.ground.update(odometry, landmarks), odometry};
+  m.newest = {m.ground.update(odometry, landmarks), odometry, {}};
+  const SE3 T_level_odom = levelFrom(m.newest->floor.attitude) * odometry.T_odom_vehicle.inverse();
+  m.newest->raised = raisedPoints(landmarks, T_level_odom, m.options.raised_points);
   if (m.last_look) {
     const Eigen::Vector3d step =
         odometry.T_odom_vehicle.translation() - m.last_look->T_odom_vehicle.translation();
@@ -158,7 +162,7 @@ Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames) {
   FoundObjects found = m.objects->extract(frame.labels, frame.slots, frame.attitude_sigma);
   frame.objects = std::move(found.objects);
   frame.moving = m.tracker.update(found.agents, SE2::fromSE3(view.now.T_odom_vehicle), frames.t_ns);
-  frame.smear = m.smear->find(frame.labels);
+  frame.smear = m.smear->find(frame.labels, view.raised);
   m.feature_clock.add(since(begin));
   if (m.numbers != nullptr) {
     begin = Clock::now();

@@ -17,6 +17,7 @@
 #include "parkade/semantics/label_lines.hpp"
 #include "parkade/semantics/line_extraction.hpp"
 #include "parkade/semantics/object_extraction.hpp"
+#include "parkade/semantics/raised_points.hpp"
 #include "parkade/semantics/slot_extraction.hpp"
 #include "parkade/semantics/smear_finder.hpp"
 #include "parkade/types/landmark.hpp"
@@ -36,6 +37,7 @@ struct SemanticFrontEndOptions {
   SlotOptions slots;
   ObjectOptions objects;
   SmearOptions smear;
+  RaisedPointOptions raised_points;
   AgentTrackerOptions agents;
   ZoneMarkerFrontEndOptions zone_markers;
   PaintedNumberFrontEndOptions painted_numbers;
@@ -53,6 +55,7 @@ struct SemanticFrontEndOptions {
     v.group("slots", slots);
     v.group("objects", objects);
     v.group("smear", smear);
+    v.group("raised_points", raised_points);
     v.group("agents", agents);
     v.group("zone_markers", zone_markers);
     v.group("painted_numbers", painted_numbers);

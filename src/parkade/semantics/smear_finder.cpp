@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "parkade/core/check.hpp"
 #include "parkade/types/semantic_class.hpp"
@@ -26,6 +25,23 @@ struct Sight {
 bool isStructure(SemanticClass c) {
   return c == SemanticClass::kWall || c == SemanticClass::kPillar ||
          c == SemanticClass::kZoneMarker;
+}
+
+bool isGround(SemanticClass c) {
+  switch (c) {
+    case SemanticClass::kUnknown:
+    case SemanticClass::kPillar:
+    case SemanticClass::kWall:
+    case SemanticClass::kCeiling:
+    case SemanticClass::kVehicle:
+    case SemanticClass::kPedestrian:
+    case SemanticClass::kZoneMarker:
+    case SemanticClass::kGuideSign:
+    case SemanticClass::kSpeedLimitSign:
+      return false;
+    default:
+      return true;
+  }
 }
 
 // Goes on by a pixel of class c. least: m of something upright that block the sight, wall_least: m
@@ -64,54 +80,117 @@ std::uint8_t smearOf(const Sight& sight, SemanticClass c, const SmearOptions& op
 
 SmearFinder::SmearFinder(const BevGeometry& geometry, const BevViews& views,
                          const SmearOptions& options)
-    : geometry_(geometry), options_(options) {
+    : geometry_(geometry), views_(views), options_(options) {
   PARKADE_CHECK(views.view_of.cols == geometry.width_px && views.view_of.rows == geometry.height_px,
                 "views of {} x {} px", views.view_of.cols, views.view_of.rows);
-  std::vector<std::pair<float, Step>> outwards;  // by distance from the camera, px
-  for (int v = 0; v < geometry.height_px; ++v) {
+  for (std::size_t view = 0; view < views.views.size(); ++view) {
     for (int u = 0; u < geometry.width_px; ++u) {
-      const auto index = views.view_of.at<std::uint8_t>(v, u);
-      if (index >= views.views.size()) continue;
-      const Eigen::Vector2d d = geometry.toPixel(views.views[index].foot) - Eigen::Vector2d(u, v);
-      Step step;
-      step.pixel = v * geometry.width_px + u;
-      // The longer component goes one pixel, so that no pixel is its own neighbour.
-      const double longer = std::max(std::abs(d.x()), std::abs(d.y()));
-      if (longer >= 1.0) {
-        const int bu = u + static_cast<int>(std::lround(d.x() / longer));
-        const int bv = v + static_cast<int>(std::lround(d.y() / longer));
-        if (bu >= 0 && bv >= 0 && bu < geometry.width_px && bv < geometry.height_px) {
-          step.before = bv * geometry.width_px + bu;
-          step.length = static_cast<float>(d.norm() / longer * geometry.metres_per_px);
-        }
-      }
-      outwards.emplace_back(static_cast<float>(d.norm()), step);
+      addRay(view, u, 0);
+      addRay(view, u, geometry.height_px - 1);
+    }
+    for (int v = 1; v + 1 < geometry.height_px; ++v) {
+      addRay(view, 0, v);
+      addRay(view, geometry.width_px - 1, v);
     }
   }
-  std::stable_sort(outwards.begin(), outwards.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  outwards_.reserve(outwards.size());
-  for (const auto& [distance, step] : outwards) outwards_.push_back(step);
 }
 
-cv::Mat SmearFinder::find(const BevLabels& labels) const {
+void SmearFinder::addRay(std::size_t view, int u, int v) {
+  const Eigen::Vector2d foot = geometry_.toPixel(views_.views[view].foot);
+  const Eigen::Vector2d d = Eigen::Vector2d(u, v) - foot;
+  const int count = static_cast<int>(std::ceil(d.cwiseAbs().maxCoeff()));
+  if (count == 0) return;
+  Ray ray;
+  ray.begin = ray.end = steps_.size();
+  ray.length = static_cast<float>(d.norm() / count * geometry_.metres_per_px);
+  for (int k = 0; k <= count; ++k) {
+    const Eigen::Vector2d p = foot + d * (static_cast<double>(k) / count);
+    const int pu = static_cast<int>(std::lround(p.x()));
+    const int pv = static_cast<int>(std::lround(p.y()));
+    if (pu < 0 || pv < 0 || pu >= geometry_.width_px || pv >= geometry_.height_px) continue;
+    const std::size_t shown_by = views_.view_of.at<std::uint8_t>(pv, pu);
+    const bool own = shown_by == view;
+    // What hides this camera's part may lie in another one's.
+    if (shown_by >= views_.views.size()) continue;
+    steps_.push_back({pv * geometry_.width_px + pu, own});
+    if (own) ray.end = steps_.size();
+  }
+  steps_.resize(ray.end);
+  if (ray.begin < ray.end) rays_.push_back(ray);
+}
+
+// Whether the labels show structure where a point stands, or just behind.
+bool SmearFinder::standsOnStructure(const cv::Mat& labels, const Eigen::Vector2d& foot,
+                                    const Eigen::Vector2d& outwards) const {
+  constexpr double kDepth = 0.3;  // m
+  constexpr int kAround = 2;      // px
+  const int steps = static_cast<int>(kDepth / geometry_.metres_per_px);
+  for (int k = 0; k <= steps; k += kAround) {
+    const Eigen::Vector2d p = geometry_.toPixel(foot + k * geometry_.metres_per_px * outwards);
+    const int u = static_cast<int>(std::lround(p.x()));
+    const int v = static_cast<int>(std::lround(p.y()));
+    for (int y = std::max(0, v - kAround); y <= std::min(labels.rows - 1, v + kAround); ++y) {
+      for (int x = std::max(0, u - kAround); x <= std::min(labels.cols - 1, u + kAround); ++x) {
+        if (isStructure(static_cast<SemanticClass>(labels.at<std::uint8_t>(y, x)))) return true;
+      }
+    }
+  }
+  return false;
+}
+
+std::vector<float> SmearFinder::hiddenBehind(const cv::Mat& labels,
+                                             const std::vector<Eigen::Vector3d>& raised) const {
+  constexpr double kLeastBelow = 0.02;  // m below the camera: else drawn beyond every picture
+  std::vector<float> hidden(views_.view_of.total(), 0.0F);
+  const double step = 0.7 * geometry_.metres_per_px;
+  for (const Eigen::Vector3d& p : raised) {
+    const std::size_t index = views_.indexAt(geometry_, p.head<2>());
+    if (index >= views_.views.size()) continue;
+    const BevViews::View& view = views_.views[index];
+    const double below = view.height - p.z();
+    const Eigen::Vector2d d = p.head<2>() - view.foot;
+    const double distance = d.norm();
+    if (below < kLeastBelow || distance < step) continue;
+    if (standsOnStructure(labels, p.head<2>(), d / distance)) continue;
+    const auto length = static_cast<float>(distance * p.z() / below);
+    const Eigen::Vector2d across = Eigen::Vector2d(-d.y(), d.x()) / distance;
+    const double half = options_.point_half_width_m;
+    for (double s = -half; s <= half; s += step) {
+      // Two pixels deep, so that no ray slips through.
+      for (const double deep : {0.0, geometry_.metres_per_px}) {
+        const Eigen::Vector2d pixel =
+            geometry_.toPixel(p.head<2>() + s * across + deep / distance * d);
+        const auto u = static_cast<int>(std::lround(pixel.x()));
+        const auto v = static_cast<int>(std::lround(pixel.y()));
+        if (u < 0 || v < 0 || u >= geometry_.width_px || v >= geometry_.height_px) continue;
+        float& most = hidden[static_cast<std::size_t>(v * geometry_.width_px + u)];
+        most = std::max(most, length);
+      }
+    }
+  }
+  return hidden;
+}
+
+cv::Mat SmearFinder::find(const BevLabels& labels,
+                          const std::vector<Eigen::Vector3d>& raised) const {
   PARKADE_CHECK(labels.labels.cols == geometry_.width_px &&
                     labels.labels.rows == geometry_.height_px && labels.labels.isContinuous(),
                 "labels of {} x {} px", labels.labels.cols, labels.labels.rows);
-  std::vector<Sight> sights(labels.labels.total());
   cv::Mat smear(labels.labels.size(), CV_8UC1, cv::Scalar(0));
+  const std::vector<float> hidden = hiddenBehind(labels.labels, raised);
   const auto least = static_cast<float>(options_.least_m);
   const auto wall_least = static_cast<float>(options_.wall_least_m);
-  // Where cameras' parts of the picture meet, a pixel may come before the one in front of it, which
-  // is another camera's: the second time that one is known.
-  for (int pass = 0; pass < 2; ++pass) {
-    for (const Step& step : outwards_) {
-      Sight sight;
-      if (step.before >= 0) sight = sights[static_cast<std::size_t>(step.before)];
+  for (const Ray& ray : rays_) {
+    Sight sight;
+    float behind = 0.0F;
+    for (std::size_t k = ray.begin; k < ray.end; ++k) {
+      const Step& step = steps_[k];
       const auto c = static_cast<SemanticClass>(labels.labels.data[step.pixel]);
-      goOn(sight, c, step.length, least, wall_least);
-      sights[static_cast<std::size_t>(step.pixel)] = sight;
-      smear.data[step.pixel] = smearOf(sight, c, options_);
+      goOn(sight, c, ray.length, least, wall_least);
+      behind = std::max(behind - ray.length, hidden[static_cast<std::size_t>(step.pixel)]);
+      if (!step.own) continue;
+      smear.data[step.pixel] =
+          behind > 0.0F && isGround(c) ? SemanticFrame::kSmear : smearOf(sight, c, options_);
     }
   }
   return smear;

@@ -11,6 +11,7 @@ namespace parkade {
 namespace {
 
 using Eigen::Vector2d;
+using Eigen::Vector3d;
 
 // A pillar's smear: a wedge from x = 4 outwards, as a camera in the picture's middle draws it.
 PaintedFloor smearedPillar() {
@@ -130,6 +131,56 @@ TEST(SmearFinder, WallsAreThinAndSpecksBlockNothing) {
   EXPECT_EQ(probe.at({4.2, 0.5}), SemanticClass::kWall);
   EXPECT_EQ(probe.at({4.5, 0.5}), SemanticClass::kUnknown);
   EXPECT_EQ(probe.at({-4.2, 0.05}), SemanticClass::kPillar);
+}
+
+constexpr double kEye = 1.0;  // m, height of the camera in the picture's middle
+
+struct Scene {
+  PaintedFloor floor;
+  cv::Mat smear;
+
+  void hide(const std::vector<Vector3d>& raised) {
+    const BevGeometry& g = floor.labels.geometry;
+    smear = SmearFinder(g, BevViews::fromMiddle(g, kEye), {}).find(floor.labels, raised);
+  }
+  [[nodiscard]] bool hidden(double x, double y) const {
+    const Vector2d q = floor.labels.geometry.toPixel({x, y});
+    return smear.at<std::uint8_t>(static_cast<int>(std::lround(q.y())),
+                                  static_cast<int>(std::lround(q.x()))) == SemanticFrame::kSmear;
+  }
+};
+
+TEST(SmearOfRaisedPoints, ReachesFromTheirFootToWhereTheyAreDrawn) {
+  Scene scene;
+  const Vector2d eye = scene.floor.labels.geometry.center;
+  scene.hide({{eye.x() + 3.0, eye.y(), 0.5}});  // drawn at 6 m
+  EXPECT_FALSE(scene.hidden(eye.x() + 2.8, 0.0));
+  for (const double r : {3.1, 4.5, 5.9}) {
+    EXPECT_TRUE(scene.hidden(eye.x() + r, eye.y())) << r;
+    EXPECT_TRUE(scene.hidden(eye.x() + r, eye.y() + 0.15 * r / 3.0)) << r;
+    EXPECT_FALSE(scene.hidden(eye.x() + r, eye.y() + 0.3 * r / 3.0)) << r;
+  }
+  EXPECT_FALSE(scene.hidden(eye.x() + 6.2, eye.y()));
+  EXPECT_FALSE(scene.hidden(eye.x() - 4.0, eye.y()));
+}
+
+TEST(SmearOfRaisedPoints, AboveTheCameraTheySayNothing) {
+  Scene scene;
+  const Vector2d eye = scene.floor.labels.geometry.center;
+  scene.hide({{eye.x() + 3.0, eye.y(), 2.0}});
+  EXPECT_EQ(cv::countNonZero(scene.smear), 0);
+}
+
+TEST(SmearOfRaisedPoints, WhatIsLabelledUprightStays) {
+  Scene scene;
+  const Vector2d eye = scene.floor.labels.geometry.center;
+  scene.floor.polygon({eye + Vector2d(3.5, -1.0), eye + Vector2d(4.0, -1.0),
+                       eye + Vector2d(4.0, 1.0), eye + Vector2d(3.5, 1.0)},
+                      SemanticClass::kVehicle, 200);
+  scene.hide({{eye.x() + 3.0, eye.y(), 0.6}});
+  EXPECT_TRUE(scene.hidden(eye.x() + 3.2, eye.y()));
+  EXPECT_FALSE(scene.hidden(eye.x() + 3.75, eye.y()));
+  EXPECT_TRUE(scene.hidden(eye.x() + 4.3, eye.y()));
 }
 
 }  // namespace

@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/mapping/unseen_ground.hpp"
+
+#include <cmath>
+#include <cstdint>
+
+namespace parkade {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector2i;
+
+constexpr GridLayer kLayer = GridLayer::kZoneMarkers;
+constexpr double kEyeSpacing = 1.0;           // m along the way
+constexpr double kEyes[] = {-1.0, 1.0, 3.0};  // m ahead of the rear axle: cameras all around a car
+constexpr double kOpaque = 0.1;               // m of structure that hide what lies behind
+constexpr double kThick = 0.35;               // m of structure whose near side is seen
+
+// What a ray may meet in a cell.
+enum Cell : std::uint8_t { kOther = 0, kStructure = 1, kSeen = 2 };
+
+/// The structure layer as an array.
+class Raster {
+ public:
+  Raster(const LayeredGrid& grid, const LayeredGrid::Bounds& bounds)
+      : resolution_(grid.resolution()),
+        min_(bounds.min),
+        size_(bounds.max - bounds.min + Vector2i::Ones()),
+        cells_(static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y()), kOther) {
+    for (const auto& [at, tile] : grid.tiles(kLayer)) {
+      for (int k = 0; k < LayeredGrid::kTileCells * LayeredGrid::kTileCells; ++k) {
+        const SemanticClass c = tile.cells[static_cast<std::size_t>(k)].believed();
+        if (c != SemanticClass::kWall && c != SemanticClass::kPillar) continue;
+        std::uint8_t* cell = find({at.x * LayeredGrid::kTileCells + k % LayeredGrid::kTileCells,
+                                   at.y * LayeredGrid::kTileCells + k / LayeredGrid::kTileCells});
+        if (cell != nullptr) *cell = kStructure;
+      }
+    }
+  }
+
+  [[nodiscard]] std::uint8_t* find(const Vector2i& cell) {
+    const Vector2i p = cell - min_;
+    if (p.x() < 0 || p.y() < 0 || p.x() >= size_.x() || p.y() >= size_.y()) return nullptr;
+    return &cells_[static_cast<std::size_t>(p.y()) * static_cast<std::size_t>(size_.x()) +
+                   static_cast<std::size_t>(p.x())];
+  }
+
+  // Marks what an eye sees, ray by ray.
+  void look(const Vector2d& eye, double range) {
+    const int rays = static_cast<int>(std::ceil(2.0 * M_PI * range / resolution_));
+    const int steps = static_cast<int>(range / resolution_);
+    const int opaque = static_cast<int>(std::lround(kOpaque / resolution_));
+    const int thick = static_cast<int>(std::lround(kThick / resolution_));
+    for (int k = 0; k < rays; ++k) {
+      const double angle = 2.0 * M_PI * k / rays;
+      const Vector2d step(std::cos(angle), std::sin(angle));
+      Vector2d p = eye / resolution_;
+      int inside = 0;
+      bool hidden = false;
+      for (int n = 0; n < steps; ++n, p += step) {
+        std::uint8_t* cell =
+            find({static_cast<int>(std::floor(p.x())), static_cast<int>(std::floor(p.y()))});
+        if (cell == nullptr) continue;
+        const bool structure = (*cell & kStructure) != 0;
+        inside = structure ? inside + 1 : 0;
+        hidden = hidden || inside >= opaque;
+        if (hidden && (!structure || inside > thick)) break;
+        *cell |= kSeen;
+      }
+    }
+  }
+
+ private:
+  double resolution_;
+  Vector2i min_;
+  Vector2i size_;
+  std::vector<std::uint8_t> cells_;
+};
+
+}  // namespace
+
+void forgetUnseenGround(const std::vector<SE2>& way, double range, LayeredGrid& grid) {
+  const auto bounds = grid.bounds(kLayer);
+  if (!bounds || way.empty()) return;
+  Raster raster(grid, *bounds);
+  const SE2* last = nullptr;
+  for (const SE2& pose : way) {
+    if (last != nullptr && (pose.translation() - last->translation()).norm() < kEyeSpacing)
+      continue;
+    last = &pose;
+    for (const double ahead : kEyes) raster.look(pose * Vector2d(ahead, 0.0), range);
+  }
+  std::vector<Vector2i> unseen;
+  for (const auto& [at, tile] : grid.tiles(kLayer)) {
+    for (int k = 0; k < LayeredGrid::kTileCells * LayeredGrid::kTileCells; ++k) {
+      const GridCell& cell = tile.cells[static_cast<std::size_t>(k)];
+      if (!cell.known() || cell.believed() == SemanticClass::kPillar) continue;
+      const Vector2i index(at.x * LayeredGrid::kTileCells + k % LayeredGrid::kTileCells,
+                           at.y * LayeredGrid::kTileCells + k / LayeredGrid::kTileCells);
+      const bool seen = anyWithinACell(index, [&](const Vector2i& near) {
+        const std::uint8_t* found = raster.find(near);
+        return found != nullptr && (*found & kSeen) != 0;
+      });
+      if (!seen) unseen.push_back(index);
+    }
+  }
+  for (const Vector2i& index : unseen) grid.touch(kLayer, index) = GridCell();
+}
+
+}  // namespace parkade

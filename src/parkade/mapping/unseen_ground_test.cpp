@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/mapping/unseen_ground.hpp"
+
+#include <gtest/gtest.h>
+
+namespace parkade {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kRange = 8.5;
+
+void fill(LayeredGrid& grid, SemanticClass c, const Vector2d& min, const Vector2d& max) {
+  for (double x = min.x() + 0.025; x < max.x(); x += 0.05) {
+    for (double y = min.y() + 0.025; y < max.y(); y += 0.05) {
+      GridCell& cell = grid.touch(GridLayer::kZoneMarkers, grid.cellOf({x, y}));
+      cell = GridCell();
+      addEvidence(cell, c, 3.0F);
+    }
+  }
+}
+
+SemanticClass at(const LayeredGrid& grid, double x, double y) {
+  return grid.at(GridLayer::kZoneMarkers, grid.cellOf({x, y})).semantic_class;
+}
+
+// Along the x axis, floor to both sides, a wall 3 m to the left of the way.
+class UnseenGround : public testing::Test {
+ protected:
+  UnseenGround() {
+    fill(grid, SemanticClass::kFloor, {0.0, -6.0}, {20.0, 6.0});
+    fill(grid, SemanticClass::kWall, {0.0, 3.0}, {20.0, 3.3});
+    for (double x = 0.0; x < 20.0; x += 0.3) way.emplace_back(0.0, Vector2d(x, 0.0));
+  }
+  LayeredGrid grid;
+  std::vector<SE2> way;
+};
+
+TEST_F(UnseenGround, FloorBehindAWallIsForgotten) {
+  forgetUnseenGround(way, kRange, grid);
+  for (const double x : {4.0, 10.0, 16.0}) {
+    EXPECT_EQ(at(grid, x, 4.0), SemanticClass::kUnknown);
+    EXPECT_EQ(at(grid, x, 5.9), SemanticClass::kUnknown);
+    EXPECT_EQ(at(grid, x, 3.1), SemanticClass::kWall);
+    EXPECT_EQ(at(grid, x, 2.9), SemanticClass::kFloor);
+    EXPECT_EQ(at(grid, x, -5.9), SemanticClass::kFloor);
+  }
+}
+
+TEST_F(UnseenGround, WhatIsSeenThroughADoorStays) {
+  fill(grid, SemanticClass::kFloor, {9.0, 3.0}, {11.0, 3.3});
+  forgetUnseenGround(way, kRange, grid);
+  EXPECT_EQ(at(grid, 10.0, 4.0), SemanticClass::kFloor);
+  EXPECT_EQ(at(grid, 4.0, 4.0), SemanticClass::kUnknown);
+}
+
+TEST_F(UnseenGround, SpecksAndPillarsHideNothingForGood) {
+  fill(grid, SemanticClass::kFloor, {0.0, 3.0}, {20.0, 3.3});
+  fill(grid, SemanticClass::kWall, {5.0, 3.0}, {5.05, 3.05});
+  fill(grid, SemanticClass::kPillar, {10.0, 2.0}, {10.5, 2.5});
+  forgetUnseenGround(way, kRange, grid);
+  EXPECT_EQ(at(grid, 5.0, 4.0), SemanticClass::kFloor);
+  EXPECT_EQ(at(grid, 10.25, 4.5), SemanticClass::kFloor);  // from before and after the pillar
+  EXPECT_EQ(at(grid, 10.25, 2.45), SemanticClass::kPillar);
+}
+
+TEST_F(UnseenGround, WithoutAWayNothingChanges) {
+  const LayeredGrid before = grid;
+  forgetUnseenGround({}, kRange, grid);
+  EXPECT_TRUE(grid == before);
+}
+
+}  // namespace
+}  // namespace parkade
