@@ -12,8 +12,8 @@ namespace parkade {
 
 struct RaisedPointOptions {
   double min_height_m = 0.25;
-  double max_sigma_m = 0.1;
-  int min_observations = 4;
+  double max_sigma_m = 0.2;
+  int min_observations = 3;
   double range_m = 8.5;
 
   void visit(OptionVisitor& v) {

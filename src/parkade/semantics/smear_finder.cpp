@@ -64,6 +64,10 @@ void goOn(Sight& sight, SemanticClass c, float length, float least, float wall_l
   sight.wheel_stop = c == SemanticClass::kWheelStop ? sight.wheel_stop + length : 0.0F;
 }
 
+double depthOf(SemanticClass structure, const SmearOptions& options) {
+  return structure == SemanticClass::kWall ? options.wall_depth_m : options.pillar_depth_m;
+}
+
 std::uint8_t smearOf(const Sight& sight, SemanticClass c, const SmearOptions& options) {
   if (c == SemanticClass::kWheelStop) {
     const bool is_smear = sight.behind_wall || sight.wheel_stop > options.wheel_stop_depth_m;
@@ -71,8 +75,7 @@ std::uint8_t smearOf(const Sight& sight, SemanticClass c, const SmearOptions& op
   }
   if (!isStructure(c)) return sight.behind_wall ? SemanticFrame::kSmear : 0;
   const bool wall = c == SemanticClass::kWall;
-  const double depth = wall ? options.wall_depth_m : options.pillar_depth_m;
-  if (sight.behind_car || sight.structure > depth) return SemanticFrame::kSmear;
+  if (sight.behind_car || sight.structure > depthOf(c, options)) return SemanticFrame::kSmear;
   return !wall && sight.structure > options.edge_m ? SemanticFrame::kBehindEdge : 0;
 }
 
@@ -182,15 +185,18 @@ cv::Mat SmearFinder::find(const BevLabels& labels,
   const auto wall_least = static_cast<float>(options_.wall_least_m);
   for (const Ray& ray : rays_) {
     Sight sight;
-    float behind = 0.0F;
+    float behind = 0.0F;  // m that key points hide from here on
+    float since = 0.0F;   // m since they do
     for (std::size_t k = ray.begin; k < ray.end; ++k) {
       const Step& step = steps_[k];
       const auto c = static_cast<SemanticClass>(labels.labels.data[step.pixel]);
       goOn(sight, c, ray.length, least, wall_least);
       behind = std::max(behind - ray.length, hidden[static_cast<std::size_t>(step.pixel)]);
+      since = behind > 0.0F ? since + ray.length : 0.0F;
       if (!step.own) continue;
-      smear.data[step.pixel] =
-          behind > 0.0F && isGround(c) ? SemanticFrame::kSmear : smearOf(sight, c, options_);
+      const bool is_hidden =
+          behind > 0.0F && (isGround(c) || (isStructure(c) && since > depthOf(c, options_)));
+      smear.data[step.pixel] = is_hidden ? SemanticFrame::kSmear : smearOf(sight, c, options_);
     }
   }
   return smear;

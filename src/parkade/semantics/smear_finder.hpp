@@ -18,7 +18,7 @@ struct SmearOptions {
   double wheel_stop_depth_m = 0.2;
   double least_m = 0.2;
   double wall_least_m = 0.3;
-  double point_half_width_m = 0.2;
+  double point_half_width_m = 0.3;
 
   void visit(OptionVisitor& v) {
     v.field("pillar_depth_m", pillar_depth_m, "m",
@@ -48,8 +48,8 @@ struct SmearOptions {
 ///
 /// Where a network takes all of a wall for floor, key points know better: what shows one at height
 /// z, seen from a camera of height h at the distance d, is drawn at d h / (h - z), and no ground is
-/// seen from its foot up to there. Whatever is labelled ground there is smear too, unless the
-/// labels show the structure that the point belongs to.
+/// seen from its foot up to there. Whatever is labelled ground there is smear too, or structure
+/// deeper than it is thick, unless the labels show the structure that the point belongs to.
 class SmearFinder {
  public:
   SmearFinder(const BevGeometry& geometry, const BevViews& views, const SmearOptions& options);

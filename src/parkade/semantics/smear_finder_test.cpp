@@ -158,7 +158,7 @@ TEST(SmearOfRaisedPoints, ReachesFromTheirFootToWhereTheyAreDrawn) {
   for (const double r : {3.1, 4.5, 5.9}) {
     EXPECT_TRUE(scene.hidden(eye.x() + r, eye.y())) << r;
     EXPECT_TRUE(scene.hidden(eye.x() + r, eye.y() + 0.15 * r / 3.0)) << r;
-    EXPECT_FALSE(scene.hidden(eye.x() + r, eye.y() + 0.3 * r / 3.0)) << r;
+    EXPECT_FALSE(scene.hidden(eye.x() + r, eye.y() + 0.4 * r / 3.0)) << r;
   }
   EXPECT_FALSE(scene.hidden(eye.x() + 6.2, eye.y()));
   EXPECT_FALSE(scene.hidden(eye.x() - 4.0, eye.y()));
@@ -169,6 +169,27 @@ TEST(SmearOfRaisedPoints, AboveTheCameraTheySayNothing) {
   const Vector2d eye = scene.floor.labels.geometry.center;
   scene.hide({{eye.x() + 3.0, eye.y(), 2.0}});
   EXPECT_EQ(cv::countNonZero(scene.smear), 0);
+}
+
+TEST(SmearOfRaisedPoints, StructureThatBeginsAmidItStandsElsewhere) {
+  Scene scene;
+  const Vector2d eye = scene.floor.labels.geometry.center;
+  scene.floor.polygon({eye + Vector2d(4.5, -1.0), eye + Vector2d(5.0, -1.0),
+                       eye + Vector2d(5.0, 1.0), eye + Vector2d(4.5, 1.0)},
+                      SemanticClass::kWall, 200);
+  scene.hide({{eye.x() + 3.0, eye.y(), 0.5}});  // drawn at 6 m
+  EXPECT_TRUE(scene.hidden(eye.x() + 4.6, eye.y()));
+  EXPECT_FALSE(scene.hidden(eye.x() + 4.6, eye.y() + 0.8));
+}
+
+TEST(SmearOfRaisedPoints, ThoseOfStructureThatIsLabelledSayNothingNew) {
+  Scene scene;
+  const Vector2d eye = scene.floor.labels.geometry.center;
+  scene.floor.polygon({eye + Vector2d(3.1, -0.2), eye + Vector2d(3.3, -0.2),
+                       eye + Vector2d(3.3, 0.2), eye + Vector2d(3.1, 0.2)},
+                      SemanticClass::kPillar, 200);
+  scene.hide({{eye.x() + 3.0, eye.y(), 0.5}});
+  EXPECT_FALSE(scene.hidden(eye.x() + 4.5, eye.y()));
 }
 
 TEST(SmearOfRaisedPoints, WhatIsLabelledUprightStays) {
