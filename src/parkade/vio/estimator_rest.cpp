@@ -35,7 +35,7 @@ void VioEstimator::Impl::detectStandstill(WindowFrame& frame, const Observations
     // What is noticed now may have begun any time since the stretch that was quiet.
     const TimeNs quiet_until = frame.t_ns - fromSeconds(options.window_s);
     for (WindowFrame& recent : window_.frames) {
-      if (recent.t_ns >= quiet_until && recent.still_since != recent.id) recent.still_since = -1;
+      if (recent.t_ns > quiet_until && recent.still_since != recent.id) recent.still_since = -1;
     }
     still_anchor_id_ = -1;
     return;
