@@ -116,10 +116,9 @@ LayerRaster rasteriseLayer(const LayeredGrid& grid, GridLayer layer, const SE2& 
     for (int k = 0; k < LayeredGrid::kTileCells * LayeredGrid::kTileCells; ++k) {
       const GridCell& cell = tile.cells[static_cast<std::size_t>(k)];
       if (!cell.known()) continue;
-      const int column =
-          at.x * LayeredGrid::kTileCells + k % LayeredGrid::kTileCells - raster.origin.x();
-      const int row =
-          at.y * LayeredGrid::kTileCells + k / LayeredGrid::kTileCells - raster.origin.y();
+      const Eigen::Vector2i place = LayeredGrid::cellOf(at, k) - raster.origin;
+      const int column = place.x();
+      const int row = place.y();
       if (availability && judged.at<std::uint8_t>(row, column) == 0) continue;
       raster.known.at<std::uint8_t>(row, column) = 1;
       if (cell.log_odds > 0 && cell.semantic_class != SemanticClass::kFloor) {

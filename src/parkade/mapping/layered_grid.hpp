@@ -102,6 +102,10 @@ class LayeredGrid {
   [[nodiscard]] std::optional<Bounds> bounds(GridLayer layer) const;
 
   [[nodiscard]] static TileIndex tileOf(const Eigen::Vector2i& cell);
+  /// The k-th cell of a tile, row by row.
+  [[nodiscard]] static Eigen::Vector2i cellOf(const TileIndex& tile, int k) {
+    return {tile.x * kTileCells + k % kTileCells, tile.y * kTileCells + k / kTileCells};
+  }
 
  private:
   static std::size_t index(GridLayer layer) { return static_cast<std::size_t>(layer); }

@@ -32,8 +32,7 @@ class Raster {
       for (int k = 0; k < LayeredGrid::kTileCells * LayeredGrid::kTileCells; ++k) {
         const SemanticClass c = tile.cells[static_cast<std::size_t>(k)].believed();
         if (c != SemanticClass::kWall && c != SemanticClass::kPillar) continue;
-        std::uint8_t* cell = find({at.x * LayeredGrid::kTileCells + k % LayeredGrid::kTileCells,
-                                   at.y * LayeredGrid::kTileCells + k / LayeredGrid::kTileCells});
+        std::uint8_t* cell = find(LayeredGrid::cellOf(at, k));
         if (cell != nullptr) *cell = kStructure;
       }
     }
@@ -96,8 +95,7 @@ void forgetUnseenGround(const std::vector<SE2>& way, double range, LayeredGrid& 
     for (int k = 0; k < LayeredGrid::kTileCells * LayeredGrid::kTileCells; ++k) {
       const GridCell& cell = tile.cells[static_cast<std::size_t>(k)];
       if (!cell.known() || cell.believed() == SemanticClass::kPillar) continue;
-      const Vector2i index(at.x * LayeredGrid::kTileCells + k % LayeredGrid::kTileCells,
-                           at.y * LayeredGrid::kTileCells + k / LayeredGrid::kTileCells);
+      const Vector2i index = LayeredGrid::cellOf(at, k);
       const bool seen = anyWithinACell(index, [&](const Vector2i& near) {
         const std::uint8_t* found = raster.find(near);
         return found != nullptr && (*found & kSeen) != 0;

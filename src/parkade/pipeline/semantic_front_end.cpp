@@ -85,8 +85,6 @@ bool SemanticFrontEnd::addOdometry(const PoseEstimate& odometry,
   Impl& m = *impl_;
   if (odometry.health == Health::kInitialising) return false;
   m.newest = {m.ground.update(odometry, landmarks), odometry, {}};
-  const SE3 T_level_odom = levelFrom(m.newest->floor.attitude) * odometry.T_odom_vehicle.inverse();
-  m.newest->raised = raisedPoints(landmarks, T_level_odom, m.options.raised_points);
   if (m.last_look) {
     const Eigen::Vector3d step =
         odometry.T_odom_vehicle.translation() - m.last_look->T_odom_vehicle.translation();
@@ -95,6 +93,8 @@ bool SemanticFrontEnd::addOdometry(const PoseEstimate& odometry,
       return false;
     }
   }
+  const SE3 T_level_odom = levelFrom(m.newest->floor.attitude) * odometry.T_odom_vehicle.inverse();
+  m.newest->raised = raisedPoints(landmarks, T_level_odom, m.options.raised_points);
   return true;
 }
 

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "parkade/core/check.hpp"
+#include "parkade/semantics/marking_pieces.hpp"
 #include "parkade/types/semantic_class.hpp"
 
 namespace parkade {
@@ -27,21 +29,13 @@ bool isStructure(SemanticClass c) {
          c == SemanticClass::kZoneMarker;
 }
 
-bool isGround(SemanticClass c) {
-  switch (c) {
-    case SemanticClass::kUnknown:
-    case SemanticClass::kPillar:
-    case SemanticClass::kWall:
-    case SemanticClass::kCeiling:
-    case SemanticClass::kVehicle:
-    case SemanticClass::kPedestrian:
-    case SemanticClass::kZoneMarker:
-    case SemanticClass::kGuideSign:
-    case SemanticClass::kSpeedLimitSign:
-      return false;
-    default:
-      return true;
+// The pixel nearest to a point of the picture; nothing beyond it.
+std::optional<cv::Point> nearestPixel(const BevGeometry& geometry, const Eigen::Vector2d& p) {
+  const cv::Point pixel(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
+  if (pixel.x < 0 || pixel.y < 0 || pixel.x >= geometry.width_px || pixel.y >= geometry.height_px) {
+    return std::nullopt;
   }
+  return pixel;
 }
 
 // Goes on by a pixel of class c. least: m of something upright that block the sight, wall_least: m
@@ -108,14 +102,13 @@ void SmearFinder::addRay(std::size_t view, int u, int v) {
   ray.length = static_cast<float>(d.norm() / count * geometry_.metres_per_px);
   for (int k = 0; k <= count; ++k) {
     const Eigen::Vector2d p = foot + d * (static_cast<double>(k) / count);
-    const int pu = static_cast<int>(std::lround(p.x()));
-    const int pv = static_cast<int>(std::lround(p.y()));
-    if (pu < 0 || pv < 0 || pu >= geometry_.width_px || pv >= geometry_.height_px) continue;
-    const std::size_t shown_by = views_.view_of.at<std::uint8_t>(pv, pu);
+    const std::optional<cv::Point> pixel = nearestPixel(geometry_, p);
+    if (!pixel) continue;
+    const std::size_t shown_by = views_.view_of.at<std::uint8_t>(*pixel);
     const bool own = shown_by == view;
     // What hides this camera's part may lie in another one's.
     if (shown_by >= views_.views.size()) continue;
-    steps_.push_back({pv * geometry_.width_px + pu, own});
+    steps_.push_back({pixel->y * geometry_.width_px + pixel->x, own});
     if (own) ray.end = steps_.size();
   }
   steps_.resize(ray.end);
@@ -161,12 +154,10 @@ std::vector<float> SmearFinder::hiddenBehind(const cv::Mat& labels,
     for (double s = -half; s <= half; s += step) {
       // Two pixels deep, so that no ray slips through.
       for (const double deep : {0.0, geometry_.metres_per_px}) {
-        const Eigen::Vector2d pixel =
-            geometry_.toPixel(p.head<2>() + s * across + deep / distance * d);
-        const auto u = static_cast<int>(std::lround(pixel.x()));
-        const auto v = static_cast<int>(std::lround(pixel.y()));
-        if (u < 0 || v < 0 || u >= geometry_.width_px || v >= geometry_.height_px) continue;
-        float& most = hidden[static_cast<std::size_t>(v * geometry_.width_px + u)];
+        const Eigen::Vector2d place = p.head<2>() + s * across + deep / distance * d;
+        const std::optional<cv::Point> pixel = nearestPixel(geometry_, geometry_.toPixel(place));
+        if (!pixel) continue;
+        float& most = hidden[static_cast<std::size_t>(pixel->y * geometry_.width_px + pixel->x)];
         most = std::max(most, length);
       }
     }
@@ -195,7 +186,7 @@ cv::Mat SmearFinder::find(const BevLabels& labels,
       since = behind > 0.0F ? since + ray.length : 0.0F;
       if (!step.own) continue;
       const bool is_hidden =
-          behind > 0.0F && (isGround(c) || (isStructure(c) && since > depthOf(c, options_)));
+          behind > 0.0F && (!hidesGround(c) || (isStructure(c) && since > depthOf(c, options_)));
       smear.data[step.pixel] = is_hidden ? SemanticFrame::kSmear : smearOf(sight, c, options_);
     }
   }

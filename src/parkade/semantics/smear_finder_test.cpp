@@ -137,8 +137,15 @@ constexpr double kEye = 1.0;  // m, height of the camera in the picture's middle
 
 struct Scene {
   PaintedFloor floor;
+  Vector2d eye = floor.labels.geometry.center;
   cv::Mat smear;
 
+  // Something that begins and ends so far ahead of the eye.
+  void stand(double begin, double end, double half_width, SemanticClass c) {
+    floor.polygon({eye + Vector2d(begin, -half_width), eye + Vector2d(end, -half_width),
+                   eye + Vector2d(end, half_width), eye + Vector2d(begin, half_width)},
+                  c, 200);
+  }
   void hide(const std::vector<Vector3d>& raised) {
     const BevGeometry& g = floor.labels.geometry;
     smear = SmearFinder(g, BevViews::fromMiddle(g, kEye), {}).find(floor.labels, raised);
@@ -152,7 +159,7 @@ struct Scene {
 
 TEST(SmearOfRaisedPoints, ReachesFromTheirFootToWhereTheyAreDrawn) {
   Scene scene;
-  const Vector2d eye = scene.floor.labels.geometry.center;
+  const Vector2d eye = scene.eye;
   scene.hide({{eye.x() + 3.0, eye.y(), 0.5}});  // drawn at 6 m
   EXPECT_FALSE(scene.hidden(eye.x() + 2.8, 0.0));
   for (const double r : {3.1, 4.5, 5.9}) {
@@ -166,17 +173,15 @@ TEST(SmearOfRaisedPoints, ReachesFromTheirFootToWhereTheyAreDrawn) {
 
 TEST(SmearOfRaisedPoints, AboveTheCameraTheySayNothing) {
   Scene scene;
-  const Vector2d eye = scene.floor.labels.geometry.center;
+  const Vector2d eye = scene.eye;
   scene.hide({{eye.x() + 3.0, eye.y(), 2.0}});
   EXPECT_EQ(cv::countNonZero(scene.smear), 0);
 }
 
 TEST(SmearOfRaisedPoints, StructureThatBeginsAmidItStandsElsewhere) {
   Scene scene;
-  const Vector2d eye = scene.floor.labels.geometry.center;
-  scene.floor.polygon({eye + Vector2d(4.5, -1.0), eye + Vector2d(5.0, -1.0),
-                       eye + Vector2d(5.0, 1.0), eye + Vector2d(4.5, 1.0)},
-                      SemanticClass::kWall, 200);
+  const Vector2d eye = scene.eye;
+  scene.stand(4.5, 5.0, 1.0, SemanticClass::kWall);
   scene.hide({{eye.x() + 3.0, eye.y(), 0.5}});  // drawn at 6 m
   EXPECT_TRUE(scene.hidden(eye.x() + 4.6, eye.y()));
   EXPECT_FALSE(scene.hidden(eye.x() + 4.6, eye.y() + 0.8));
@@ -184,20 +189,16 @@ TEST(SmearOfRaisedPoints, StructureThatBeginsAmidItStandsElsewhere) {
 
 TEST(SmearOfRaisedPoints, ThoseOfStructureThatIsLabelledSayNothingNew) {
   Scene scene;
-  const Vector2d eye = scene.floor.labels.geometry.center;
-  scene.floor.polygon({eye + Vector2d(3.1, -0.2), eye + Vector2d(3.3, -0.2),
-                       eye + Vector2d(3.3, 0.2), eye + Vector2d(3.1, 0.2)},
-                      SemanticClass::kPillar, 200);
+  const Vector2d eye = scene.eye;
+  scene.stand(3.1, 3.3, 0.2, SemanticClass::kPillar);
   scene.hide({{eye.x() + 3.0, eye.y(), 0.5}});
   EXPECT_FALSE(scene.hidden(eye.x() + 4.5, eye.y()));
 }
 
 TEST(SmearOfRaisedPoints, WhatIsLabelledUprightStays) {
   Scene scene;
-  const Vector2d eye = scene.floor.labels.geometry.center;
-  scene.floor.polygon({eye + Vector2d(3.5, -1.0), eye + Vector2d(4.0, -1.0),
-                       eye + Vector2d(4.0, 1.0), eye + Vector2d(3.5, 1.0)},
-                      SemanticClass::kVehicle, 200);
+  const Vector2d eye = scene.eye;
+  scene.stand(3.5, 4.0, 1.0, SemanticClass::kVehicle);
   scene.hide({{eye.x() + 3.0, eye.y(), 0.6}});
   EXPECT_TRUE(scene.hidden(eye.x() + 3.2, eye.y()));
   EXPECT_FALSE(scene.hidden(eye.x() + 3.75, eye.y()));

@@ -9,37 +9,40 @@
 namespace parkade {
 namespace {
 
-Result<std::vector<ReadFace>> readEach(const std::vector<ZoneMarkerFace>& faces,
-                                       ZoneTextReader& reader, const std::string& only) {
-  std::vector<ReadFace> read;
+Result<FaceReadings> readEach(const std::vector<ZoneMarkerFace>& faces, ZoneTextReader& reader,
+                              const std::string& only) {
+  FaceReadings read;
   for (const ZoneMarkerFace& face : faces) {
     Result<std::vector<TextReading>> readings = reader.read(face.patch, only);
     if (!readings) return readings.error();
-    read.push_back({&face, std::move(readings).value()});
+    read.push_back(std::move(readings).value());
   }
   return read;
 }
 
-FaceReadings readingsOf(const std::vector<ReadFace>& faces) {
-  FaceReadings readings;
-  for (const ReadFace& face : faces) readings.push_back(face.readings);
-  return readings;
+std::vector<ReadFace> together(const std::vector<ZoneMarkerFace>& faces, FaceReadings readings) {
+  std::vector<ReadFace> read;
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    read.push_back({&faces[i], std::move(readings[i])});
+  }
+  return read;
 }
 
 }  // namespace
 
 Result<std::vector<ReadFace>> readFaces(const ZoneMarkerSight& sight, ZoneTextReader& reader,
                                         const std::string& only) {
-  Result<std::vector<ReadFace>> first = readEach(sight.faces, reader, only);
-  if (!first || sight.other_faces.empty()) return first;
-  const FaceReadings likelier = readingsOf(*first);
-  if (isSettled(likelier, sight.one_face)) return first;
-  Result<std::vector<ReadFace>> second = readEach(sight.other_faces, reader, only);
-  if (!second) return second;
-  const FaceReadings other = readingsOf(*second);
+  Result<FaceReadings> first = readEach(sight.faces, reader, only);
+  if (!first) return first.error();
+  if (sight.other_faces.empty() || isSettled(*first, sight.one_face)) {
+    return together(sight.faces, std::move(first).value());
+  }
+  Result<FaceReadings> other = readEach(sight.other_faces, reader, only);
+  if (!other) return other.error();
   const bool one =
-      sight.one_face ? showsOneFace(likelier, other, true) : showsOneFace(other, likelier, false);
-  return one == sight.one_face ? first : second;
+      sight.one_face ? showsOneFace(*first, *other, true) : showsOneFace(*other, *first, false);
+  return one == sight.one_face ? together(sight.faces, std::move(first).value())
+                               : together(sight.other_faces, std::move(other).value());
 }
 
 Result<std::vector<ZoneMarkerView>> viewsOf(const std::vector<ZoneMarkerSight>& sights,

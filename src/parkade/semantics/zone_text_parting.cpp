@@ -13,18 +13,11 @@ namespace {
 constexpr double kSure = 0.9;
 constexpr double kLikely = 0.3;
 
-// The best text of a face that is one.
-TextReading bestOf(const std::vector<TextReading>& readings) {
-  PARKADE_CHECK(!readings.empty(), "a face without readings");
-  const auto text = std::find_if(readings.begin(), readings.end(),
-                                 [](const TextReading& r) { return !r.text.empty(); });
-  return text != readings.end() ? *text : TextReading{};
-}
-
 TextReading surest(const FaceReadings& faces) {
   TextReading best;
   for (const auto& readings : faces) {
-    const TextReading text = bestOf(readings);
+    PARKADE_CHECK(!readings.empty(), "a face without readings");
+    const TextReading text = bestTextOf(readings);
     if (text.probability > best.probability) best = text;
   }
   return best;
@@ -65,10 +58,6 @@ bool isCut(const std::string& whole, const FaceReadings& faces) {
 }
 
 }  // namespace
-
-double certaintyOf(const FaceReadings& faces) {
-  return surest(faces).probability;
-}
 
 bool isSettled(const FaceReadings& faces, bool one_face) {
   const TextReading text = surest(faces);

@@ -15,9 +15,6 @@ namespace parkade {
 /// What a reader says of each face, best first; at least one reading a face (checked).
 using FaceReadings = std::vector<std::vector<TextReading>>;
 
-/// Probability of the surest face's text; 0 where nothing is read.
-double certaintyOf(const FaceReadings& faces);
-
 /// Whether readings of the likelier parting leave no question, so that the other need not be read.
 bool isSettled(const FaceReadings& faces, bool one_face);
 

@@ -13,12 +13,17 @@ struct TextReading {
   double probability = 0.0;
 };
 
-/// Probability of the best text of some readings, best first; 0 where nothing may be written.
-inline double certaintyOf(const std::vector<TextReading>& readings) {
+/// The best of some readings, best first, that is a text; without one, none of probability 0.
+inline TextReading bestTextOf(const std::vector<TextReading>& readings) {
   for (const TextReading& reading : readings) {
-    if (!reading.text.empty()) return reading.probability;
+    if (!reading.text.empty()) return reading;
   }
-  return 0.0;
+  return {};
+}
+
+/// Its probability; 0 where nothing may be written.
+inline double certaintyOf(const std::vector<TextReading>& readings) {
+  return bestTextOf(readings).probability;
 }
 
 }  // namespace parkade

@@ -83,6 +83,8 @@ class VioEstimator::Impl {
 
   // The window's frames (estimator_window.cpp).
   void trimWindow();
+  /// The last keyframe before a frame; null where there is none.
+  [[nodiscard]] const WindowFrame* keyframeBefore(std::size_t index) const;
   [[nodiscard]] bool wantsKeyframe(std::size_t index) const;
   void removeFrame(std::size_t index);
   void marginaliseOldestKeyframe();

@@ -16,14 +16,18 @@ constexpr double kMaxSummed = 1.0;  // s
 
 }  // namespace
 
+const WindowFrame* VioEstimator::Impl::keyframeBefore(std::size_t index) const {
+  while (index > 0 && !window_.frames[index - 1].keyframe) --index;
+  return index > 0 ? &window_.frames[index - 1] : nullptr;
+}
+
 // Whether the frame adds to what the keyframes before it see; decided when it leaves the recent
 // frames, with the frame after it known.
 bool VioEstimator::Impl::wantsKeyframe(std::size_t index) const {
   const WindowFrame& frame = window_.frames[index];
-  std::size_t last = index;
-  while (last > 0 && !window_.frames[last - 1].keyframe) --last;
-  if (last == 0) return true;
-  const WindowFrame& keyframe = window_.frames[last - 1];
+  const WindowFrame* last = keyframeBefore(index);
+  if (last == nullptr) return true;
+  const WindowFrame& keyframe = *last;
   if (frame.still_since >= 0 && frame.still_since != frame.id) return false;
 
   const SO3 R_keyframe_frame = keyframe.state.R_odom_imu.inverse() * frame.state.R_odom_imu;
@@ -82,9 +86,8 @@ void VioEstimator::Impl::removeFrame(std::size_t index) {
     return;
   }
   // Relative to a frame that stays: one that waits for the end of a rest may be dropped later.
-  std::size_t lasting = index - 1;
-  while (lasting > 0 && !window_.frames[lasting].keyframe) --lasting;
-  history_.addDropped(frame, window_.frames[lasting]);
+  const WindowFrame* lasting = keyframeBefore(index);
+  history_.addDropped(frame, lasting != nullptr ? *lasting : window_.frames.front());
   const Preintegration sum =
       readings_.sumBetween(before.t_ns, after.t_ns, noise_, before.bias, gap_ns_);
   dropFrame(window_, frame.id, sum);
