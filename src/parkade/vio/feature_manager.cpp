@@ -21,6 +21,11 @@ constexpr double kGatePx = 4.0;              // and at least this
 constexpr double kCameraGateSquared = 12.0;  // of a camera's median feature: far outside chance
 constexpr double kCameraGatePx = 2.0;
 constexpr int kMinCameraFeatures = 6;
+constexpr double kNoisePrior = 4.0;  // views' coordinates that the common noise counts for
+constexpr double kLeastNoiseFactor = 0.7;
+constexpr double kMostNoiseFactor = 10.0;
+constexpr double kMinFreedom = 3.0;  // of a landmark that tells the common noise
+constexpr std::size_t kMinTellers = 20;
 constexpr int kCellColumns = 4;
 constexpr int kCellRows = 3;
 
@@ -38,6 +43,29 @@ struct Innovation {
   double squared;  // over its covariance
   double px;
 };
+
+// What a landmark's views miss it by.
+struct Missed {
+  WindowFeature* feature;
+  double squares;  // whitened
+  double freedom;  // coordinates of its views, less its own
+};
+
+// Some tracks are worse than others in all their views: an edge that slides, a shadow's border. The
+// variance of each landmark's views is that of the middle one's, joined with what its own tell.
+void setNoiseFactors(const std::vector<Missed>& missed) {
+  std::vector<double> variances;
+  for (const Missed& m : missed) {
+    if (m.freedom >= kMinFreedom) variances.push_back(m.squares / m.freedom);
+  }
+  if (variances.size() < kMinTellers) return;
+  const double common = median(std::move(variances));
+  if (!(common > 0.0)) return;
+  for (const Missed& m : missed) {
+    const double variance = (kNoisePrior + m.squares / common) / (kNoisePrior + m.freedom);
+    m.feature->noise_factor = std::clamp(std::sqrt(variance), kLeastNoiseFactor, kMostNoiseFactor);
+  }
+}
 
 }  // namespace
 
@@ -210,17 +238,25 @@ std::vector<WindowFeature*> FeatureManager::select(Window& window) {
 
 int FeatureManager::rejectOutliers(Window& window, const std::vector<WindowFeature*>& features) {
   int rejected = 0;
+  std::vector<Missed> missed;
   for (WindowFeature* feature : features) {
     const std::size_t before = feature->observations.size();
     bool anchor_lost = false;
+    double squares = 0.0;
     std::erase_if(feature->observations, [&](const WindowObservation& o) {
-      if (whitenedError(window, *feature, o) < options_.window.outlier_sigma) return false;
+      const double error = whitenedError(window, *feature, o);
+      if (error < options_.window.outlier_sigma) {
+        squares += error * error;
+        return false;
+      }
       if (o.frame_id == feature->anchor_frame_id && o.camera == feature->anchor_camera) {
         anchor_lost = true;
       }
       return true;
     });
     const std::size_t removed = before - feature->observations.size();
+    const double freedom = 2.0 * static_cast<double>(feature->observations.size()) - 3.0;
+    if (freedom > 0.0) missed.push_back({feature, squares, freedom});
     if (removed == 0) continue;
     rejected += static_cast<int>(removed);
     ++feature->failures;
@@ -233,6 +269,7 @@ int FeatureManager::rejectOutliers(Window& window, const std::vector<WindowFeatu
       feature->selected = false;
     }
   }
+  setNoiseFactors(missed);
   for (auto it = window.features.begin(); it != window.features.end();) {
     if (it->second.observations.empty()) {
       if (it->second.failures >= kMaxFailures) banned_.insert(it->first);

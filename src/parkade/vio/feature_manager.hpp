@@ -44,7 +44,8 @@ class FeatureManager {
   /// cameras and image regions, longest tracks first.
   std::vector<WindowFeature*> select(Window& window);
 
-  /// Removes observations that miss by more than the limit; returns how many.
+  /// Removes observations that miss by more than the limit; returns how many. What the others miss
+  /// their landmarks by becomes the landmarks' noise factors (docs/math/residuals.md, eq. 3b).
   int rejectOutliers(Window& window, const std::vector<WindowFeature*>& features);
 
   /// Forgets failures, for the states that caused them have been replaced.

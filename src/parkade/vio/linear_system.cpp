@@ -237,7 +237,7 @@ void LinearSystem::addFeature(const Window& window, WindowFeature& feature,
       motion << frame.state.v_odom, frame.gyro - frame.bias.gyro;
       observation.pixel_rate = j.d_px_d_target * motion;
     }
-    const double weight = 1.0 / observation.sigma_px;
+    const double weight = 1.0 / (feature.noise_factor * observation.sigma_px);
     Eigen::Vector2d r = weight * (pixel - observedPixel(window, observation));
     const RobustValue term = loss_(r.squaredNorm());
     cost_ += 0.5 * term.rho;

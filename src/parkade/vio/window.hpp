@@ -135,6 +135,7 @@ struct WindowFeature {
   double inverse_distance = 0.0;                         ///< 1/m; below zero: far, and noise
   int failures = 0;                                      ///< how often its point was thrown away
   int last_seen_id = 0;                                  ///< newest frame that saw it
+  double noise_factor = 1.0;  ///< of its views' sigmas (docs/math/residuals.md, eq. 3b)
 };
 
 /// What is known of states of the window from all that left it: a quadratic in the deltas of the

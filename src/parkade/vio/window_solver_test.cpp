@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "parkade/core/median.hpp"
 #include "parkade/core/random.hpp"
 #include "parkade/geometry/test_support.hpp"
 #include "parkade/imu/reading_buffer.hpp"
@@ -365,6 +366,37 @@ TEST(Marginalisation, PriorPullsBackAsTheFullProblemDoes) {
     EXPECT_LT(angleBetween(window.frames[i].state.R_odom_imu, solved[i + 1].state.R_odom_imu),
               1e-4);
   }
+}
+
+TEST(FeatureManager, LandmarksThatAllViewsMissCountLess) {
+  std::vector<WindowFeature*> features;
+  Window window = makeWindow(6, 0.5, features);
+  ASSERT_GT(features.size(), 60U);
+  // The views of every tenth err by four times as much, and are told with twice the sigma, lest
+  // they pass for outliers.
+  Random random(7);
+  const auto isWorse = [](std::size_t k) { return k % 10 == 3; };
+  for (std::size_t k = 0; k < features.size(); ++k) {
+    if (!isWorse(k)) continue;
+    for (WindowObservation& o : features[k]->observations) {
+      o.pixel.x() += 2.0 * random.normal();
+      o.pixel.y() += 2.0 * random.normal();
+      o.sigma_px = 1.0;
+    }
+  }
+  ASSERT_TRUE(solveWindow(window, features, tightOptions()).ok);
+  FeatureManager manager{VioOptions{}};
+  manager.rejectOutliers(window, features);
+  std::vector<double> usual;
+  std::vector<double> worse;
+  for (std::size_t k = 0; k < features.size(); ++k) {
+    if (features[k]->observations.size() < 4) continue;
+    EXPECT_GE(features[k]->noise_factor, 0.7);
+    (isWorse(k) ? worse : usual).push_back(features[k]->noise_factor);
+  }
+  ASSERT_GT(worse.size(), 4U);
+  EXPECT_NEAR(median(usual), 1.0, 0.2);
+  EXPECT_GT(median(worse), 1.5);
 }
 
 }  // namespace
