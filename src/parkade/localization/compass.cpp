@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "parkade/core/units.hpp"
+#include "parkade/geometry/so3.hpp"
 
 namespace parkade {
 namespace {
@@ -84,6 +85,26 @@ std::optional<double> Compass::read(const SemanticFrame& frame, double expected_
   }
   if (along_axes <= 0.0 || along_axes < options_.min_share * all) return std::nullopt;
   return expected_heading + sum / along_axes - axis_shift;
+}
+
+double CompassScatter::add(double off_odometry) {
+  constexpr std::size_t kReadings = 15;
+  constexpr double kPrior = 4.0;   // readings that the usual scatter counts for
+  constexpr double kShared = 2.0;  // of the error over the scatter: neighbours see the same lines
+  latest_.push_back(off_odometry);
+  if (latest_.size() > kReadings) latest_.pop_front();
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const double offset : latest_) {
+    const double off = wrapAngle(offset - latest_.front());
+    sum += off;
+    squares += off * off;
+  }
+  const auto count = static_cast<double>(latest_.size());
+  const double usual = usual_sigma_ / kShared;
+  const double scattered = std::max(0.0, squares - sum * sum / count);
+  const double variance = (kPrior * usual * usual + scattered) / (kPrior + count - 1.0);
+  return std::max(usual_sigma_, kShared * std::sqrt(variance));
 }
 
 }  // namespace parkade

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -72,6 +73,22 @@ class Compass {
   [[nodiscard]] std::vector<Line> linesOf(const SemanticFrame& frame) const;
   bool learnAxis();
   std::vector<Line> seen_;  // while learning
+};
+
+/// How much the headings that a compass reads err, told by how they differ from each other: over
+/// the last metres the odometry does not turn by as much as readings of worn lines scatter.
+class CompassScatter {
+ public:
+  /// usual_sigma: rad, the error of a reading where lines are good; none is told to be less.
+  explicit CompassScatter(double usual_sigma) : usual_sigma_(usual_sigma) {}
+
+  /// Enters a reading, less the odometry's heading (rad), and gives its sigma, rad.
+  double add(double off_odometry);
+  void forget() { latest_.clear(); }
+
+ private:
+  double usual_sigma_;
+  std::deque<double> latest_;
 };
 
 }  // namespace parkade

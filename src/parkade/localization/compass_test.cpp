@@ -82,5 +82,24 @@ TEST(Compass, DoesNotLearnFromSlantedRowsOrWhenOff) {
   }
 }
 
+TEST(CompassScatter, TellsReadingsThatDifferFromEachOther) {
+  Random random(5);
+  CompassScatter scatter(0.3 * kDegree);
+  // Good lines, about half a turn off the odometry.
+  for (int i = 0; i < 30; ++i) {
+    const double off = wrapAngle(180.0 * kDegree + 0.05 * kDegree * random.normal());
+    EXPECT_DOUBLE_EQ(scatter.add(off), 0.3 * kDegree);
+  }
+  // Worn ones.
+  double sigma = 0.0;
+  for (int i = 0; i < 15; ++i) {
+    sigma = scatter.add(wrapAngle(180.0 * kDegree + 0.7 * kDegree * random.normal()));
+  }
+  EXPECT_GT(sigma, 0.8 * kDegree);
+  EXPECT_LT(sigma, 2.0 * kDegree);
+  scatter.forget();
+  EXPECT_DOUBLE_EQ(scatter.add(0.0), 0.3 * kDegree);
+}
+
 }  // namespace
 }  // namespace parkade

@@ -42,6 +42,7 @@ class FusedMapper::Impl {
       : options(o),
         viewpoints(std::move(cameras)),
         compass(o.compass),
+        compass_scatter(o.compass.sigma_deg * kDegree),
         rows(o.rows),
         local(o.local_map),
         global(o.global_map),
@@ -74,6 +75,7 @@ class FusedMapper::Impl {
   FusedMapperOptions options;
   std::vector<Eigen::Vector3d> viewpoints;
   Compass compass;
+  CompassScatter compass_scatter;
   RowCompass rows;
   std::int64_t axes = -1;     // heading reference of the filter, once the compass has learned
   double axes_heading = 0.0;  // of that reference as it was then

@@ -112,7 +112,10 @@ void FusedMapper::Impl::tryStretch(const SemanticFrame& frame, const View& view,
 void FusedMapper::Impl::readCompass(const SemanticFrame& frame, const View& view) {
   if (!options.compass.enable) return;
   const SE2 in_odometry = SE2::fromSE3(view.odometry.T_odom_vehicle);
-  if (view.odometry.health != Health::kTracking) rows.forget();
+  if (view.odometry.health != Health::kTracking) {
+    rows.forget();
+    compass_scatter.forget();
+  }
   rows.add(frame, in_odometry, view.travelled);
   const double expected = poseOf(view).angle();
   const double axis_shift =
@@ -124,7 +127,7 @@ void FusedMapper::Impl::readCompass(const SemanticFrame& frame, const View& view
     axes = filter.addHeadingReference(options.compass.reference_sigma_deg * kDegree);
     axes_heading = filter.anchor(axes).T_world_vehicle.angle();
   }
-  if (heading) turnTo(*heading, options.compass.sigma_deg * kDegree, view);
+  if (heading) turnTo(*heading, compass_scatter.add(*heading - in_odometry.angle()), view);
   const double drift = poseOf(view).angle() - in_odometry.angle();
   if (const std::optional<RowReading> row = rows.read(*axis + axis_shift - drift)) {
     turnTo(*axis - row->direction + in_odometry.angle(), row->sigma, view);
