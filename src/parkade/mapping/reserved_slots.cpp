@@ -178,12 +178,10 @@ std::vector<Vector2d> findPaintedSigns(const LayeredGrid& grid) {
   if (!checkPictureSize(size.cast<double>())) return signs;  // of a drive that went astray
   cv::Mat painted = cv::Mat::zeros(size.y(), size.x(), CV_8UC1);
   for (const auto& [at, tile] : grid.tiles(GridLayer::kRoadMarkers)) {
-    const Vector2i corner(at.x * LayeredGrid::kTileCells, at.y * LayeredGrid::kTileCells);
     for (int k = 0; k < LayeredGrid::kTileCells * LayeredGrid::kTileCells; ++k) {
       const GridCell& cell = tile.cells[static_cast<std::size_t>(k)];
       if (cell.believed() != SemanticClass::kPaintedNumber) continue;
-      const Vector2i p =
-          corner + Vector2i(k % LayeredGrid::kTileCells, k / LayeredGrid::kTileCells) - bounds->min;
+      const Vector2i p = LayeredGrid::cellOf(at, k) - bounds->min;
       painted.at<std::uint8_t>(p.y(), p.x()) = 255;
     }
   }
