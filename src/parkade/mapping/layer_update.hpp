@@ -25,8 +25,10 @@ void updateLayers(const PackedLabels& labels, SemanticClass c, const EvidenceSte
       const bool marker = role == LayerRole::kRoadMarker;
       addSteps(touch(GridLayer::kParkingLines), line ? c : kFloor, line ? steps.seen : steps.bare);
       addSteps(touch(GridLayer::kAvailability), kFloor, steps.seen);
-      addSteps(touch(GridLayer::kRoadMarkers), marker ? c : kFloor,
-               marker ? steps.seen : steps.bare);
+      // Wheel stops do not wear off, and what a picture draws behind one another shows as floor.
+      GridCell& marked = touch(GridLayer::kRoadMarkers);
+      const bool stop = marked.semantic_class == SemanticClass::kWheelStop;
+      addSteps(marked, marker ? c : kFloor, marker || stop ? steps.seen : steps.bare);
       addSteps(touch(GridLayer::kZoneMarkers), kFloor, steps.seen);
       if (has_dynamic()) addSteps(touch(GridLayer::kDynamic), kFloor, steps.dynamic);
       return;

@@ -10,7 +10,9 @@
 #include "parkade/core/check.hpp"
 #include "parkade/core/units.hpp"
 #include "parkade/mapping/column_feet.hpp"
+#include "parkade/mapping/slot_lines.hpp"
 #include "parkade/mapping/unseen_ground.hpp"
+#include "parkade/mapping/wheel_stops.hpp"
 #include "parkade/pipeline/fused_mapper_impl.hpp"
 
 namespace parkade {
@@ -221,6 +223,8 @@ ParkingMap FusedMapper::map(const std::string& name) const {
   trimColumnFeet(map.objects, map.grid);
   completeColumnFeet(map.objects, map.grid);
   map.slots = m.slots.slots(m.last_t_ns, map.objects);
+  completeSlotLines(map.slots, map.grid);
+  trimWheelStops(map.slots, way, map.grid);
   for (const Impl::Stretch& s : m.stretches) {
     map.nodes.push_back(
         {s.anchor, s.t_ns, liftPose(s.pose.T_world_vehicle, s.pose.z, s.T_odom_vehicle)});

@@ -212,7 +212,8 @@ Eigen::Matrix3d landmarkCovariance(const Window& window, const WindowFeature& fe
                    feature.inverse_distance, pixel, &j)) {
       continue;
     }
-    information += j.d_px_d_landmark.transpose() * j.d_px_d_landmark / (o.sigma_px * o.sigma_px);
+    const double sigma = feature.noise_factor * o.sigma_px;
+    information += j.d_px_d_landmark.transpose() * j.d_px_d_landmark / (sigma * sigma);
   }
   // p = R (direction / rho): along the ray the inverse distance counts with -1 / rho^2.
   const double rho = feature.inverse_distance;

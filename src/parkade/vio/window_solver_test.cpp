@@ -399,5 +399,16 @@ TEST(FeatureManager, LandmarksThatAllViewsMissCountLess) {
   EXPECT_GT(median(worse), 1.5);
 }
 
+TEST(LandmarkCovariance, FollowsTheLandmarksNoise) {
+  std::vector<WindowFeature*> features;
+  Window window = makeWindow(6, 0.5, features);
+  ASSERT_TRUE(solveWindow(window, features, tightOptions()).ok);
+  WindowFeature& feature = *features.front();
+  const Eigen::Matrix3d usual = landmarkCovariance(window, feature);
+  EXPECT_GT(usual.trace(), 0.0);
+  feature.noise_factor = 2.0;
+  EXPECT_NEAR(landmarkCovariance(window, feature).trace() / usual.trace(), 4.0, 0.1);
+}
+
 }  // namespace
 }  // namespace parkade
