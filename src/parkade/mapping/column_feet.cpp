@@ -86,6 +86,24 @@ void trimColumnFeet(const std::vector<MapObject>& objects, LayeredGrid& grid) {
   for (const Vector2i& cell : behind) grid.touch(GridLayer::kZoneMarkers, cell) = GridCell();
 }
 
+void forgetStrayPillars(const std::vector<MapObject>& objects, LayeredGrid& grid) {
+  const std::vector<Vector2d> pillars = positionsOf(SemanticClass::kPillar, objects);
+  std::vector<Vector2i> strays;
+  for (const auto& [at, tile] : grid.tiles(GridLayer::kZoneMarkers)) {
+    for (int k = 0; k < LayeredGrid::kTileCells * LayeredGrid::kTileCells; ++k) {
+      if (tile.cells[static_cast<std::size_t>(k)].semantic_class != SemanticClass::kPillar)
+        continue;
+      const Vector2i cell = LayeredGrid::cellOf(at, k);
+      const Vector2d p = grid.centerOf(cell);
+      if (std::none_of(pillars.begin(), pillars.end(),
+                       [&](const Vector2d& pillar) { return (p - pillar).norm() <= kReach; })) {
+        strays.push_back(cell);
+      }
+    }
+  }
+  for (const Vector2i& cell : strays) grid.touch(GridLayer::kZoneMarkers, cell) = GridCell();
+}
+
 void completeColumnFeet(const std::vector<MapObject>& objects, LayeredGrid& grid) {
   constexpr std::size_t kFewest = 3;  // feet to learn from
   constexpr double kLeast = 0.04;     // m^2, of a foot that was seen

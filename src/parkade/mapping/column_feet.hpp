@@ -15,6 +15,10 @@ namespace parkade {
 /// objects, and walls, are left alone. docs/math/grid.md.
 void trimColumnFeet(const std::vector<MapObject>& objects, LayeredGrid& grid);
 
+/// Forgets what the layer of structure holds of pillars more than 1 m off any pillar of the map:
+/// corners of cars and smears that single pictures took for one. Those cells become unknown.
+void forgetStrayPillars(const std::vector<MapObject>& objects, LayeredGrid& grid);
+
 /// Gives feet to pillars that the cameras' own pictures show and the bird's-eye pictures hardly do:
 /// columns of a garage are alike, so where a pillar among the objects has less than 0.6 of the
 /// usual foot's area around it (the median of those seen, three at least), a disc of that area is

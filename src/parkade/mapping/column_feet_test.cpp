@@ -51,6 +51,17 @@ TEST(ColumnFeet, LeavesWallsAndWhatIsNoKnownPillarAlone) {
   EXPECT_EQ(at(grid, 3.1, 0.1), SemanticClass::kPillar);
 }
 
+TEST(ColumnFeet, WhatStandsAtNoPillarIsForgotten) {
+  LayeredGrid grid;
+  fill(grid, SemanticClass::kPillar, {-0.2, -0.2}, {0.2, 0.2});
+  fill(grid, SemanticClass::kPillar, {3.0, 0.0}, {3.2, 0.2});
+  fill(grid, SemanticClass::kWall, {4.0, 0.0}, {5.0, 0.2});
+  forgetStrayPillars({pillarAt(0.0, 0.0)}, grid);
+  EXPECT_EQ(at(grid, 0.025, 0.025), SemanticClass::kPillar);
+  EXPECT_EQ(at(grid, 3.1, 0.1), SemanticClass::kUnknown);
+  EXPECT_EQ(at(grid, 4.5, 0.1), SemanticClass::kWall);
+}
+
 TEST(ColumnFeet, APillarKeepsItsOwnFootBesideAnother) {
   LayeredGrid grid;
   for (const double x : {0.0, 0.9})
