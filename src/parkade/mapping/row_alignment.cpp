@@ -9,6 +9,7 @@
 
 #include "parkade/core/median.hpp"
 #include "parkade/geometry/planar.hpp"
+#include "parkade/mapping/map_check.hpp"
 #include "parkade/mapping/row_evidence.hpp"
 #include "parkade/mapping/slot_row.hpp"
 
@@ -112,6 +113,7 @@ double offAxes(const Vector2d& v, double axis) {
 }
 
 constexpr double kOnAxis = 4.0 * M_PI / 180.0;
+constexpr double kAskew = 8.0 * M_PI / 180.0;
 
 // Of the garage: along most of the slots that are not slanted, weighed by how often they were seen.
 std::optional<double> findAxis(const std::vector<MapSlot>& slots) {
@@ -139,7 +141,6 @@ std::optional<double> findAxis(const std::vector<MapSlot>& slots) {
 }
 
 bool isMisread(const MapSlot& slot, double axis) {
-  constexpr double kAskew = 8.0 * M_PI / 180.0;
   constexpr double kMore = 2.5;  // than its sides
   const double sides = offAxes(inwardOf(slot), axis);
   const double entrance = offAxes(slot.corners[1] - slot.corners[0], axis);
@@ -160,6 +161,43 @@ MapSlot squared(const MapSlot& slot) {
   return square;
 }
 
+// A slanted slot whose entrance runs neither along an aisle nor across one.
+bool hasAskewEntrance(const MapSlot& slot, double axis) {
+  return slot.shape == SlotShape::kSlanted && offAxes(inwardOf(slot), axis) > kAskew &&
+         offAxes(slot.corners[1] - slot.corners[0], axis) > kAskew;
+}
+
+// Its entrance along the axis through the corner that lies farther out, its sides as they are.
+MapSlot straightened(const MapSlot& slot, double axis) {
+  const Vector2d front = slot.corners[1] - slot.corners[0];
+  const double turned = std::atan2(front.y(), front.x()) - axis;
+  const double angle = axis + std::round(turned / M_PI_2) * M_PI_2;
+  const Vector2d along(std::cos(angle), std::sin(angle));
+  Vector2d into(-along.y(), along.x());
+  const Vector2d inward = inwardOf(slot);
+  if (into.dot(inward) < 0.0) into = -into;
+  const double ahead = front.dot(into) / into.dot(inward);
+  const double depth = (slot.corners[3] - slot.corners[0]).norm();
+  MapSlot straight = slot;
+  straight.corners[ahead > 0.0 ? 1 : 0] -= std::abs(ahead) * inward;
+  straight.corners[2] = straight.corners[1] + depth * inward;
+  straight.corners[3] = straight.corners[0] + depth * inward;
+  return straight;
+}
+
+// Whether one of the others has its entrance on the slot's line, and none lies where the slot does.
+bool isInAStraightRow(const MapSlot& slot, std::size_t index, const std::vector<MapSlot>& slots,
+                      double axis) {
+  constexpr double kOverlap = 0.2;
+  bool is_in_row = false;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (i == index) continue;
+    if (overlapShare(slots[i].corners, slot.corners) > kOverlap) return false;
+    is_in_row = is_in_row || (!hasAskewEntrance(slots[i], axis) && areInOneRow(slot, slots[i]));
+  }
+  return is_in_row;
+}
+
 bool hasSides(const MapSlot& slot, const LayeredGrid& grid) {
   constexpr double kHalf = 0.5;
   const SlotEvidence evidence = gatherEvidence(grid, slot.corners);
@@ -174,6 +212,12 @@ SquaredSlots squareSlots(std::vector<MapSlot>& slots, const LayeredGrid& grid) {
   if (!axis) return result;
   const std::vector<MapSlot> given = slots;
   for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (hasAskewEntrance(given[i], *axis)) {
+      const MapSlot straight = straightened(given[i], *axis);
+      if (!isInAStraightRow(straight, i, given, *axis)) continue;
+      slots[i] = straight;
+      result.moved.push_back(i);
+    }
     if (!isMisread(given[i], *axis)) continue;
     const MapSlot square = squared(given[i]);
     const auto isItsRow = [&](const MapSlot& other) {

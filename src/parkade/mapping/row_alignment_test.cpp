@@ -86,6 +86,43 @@ TEST_F(Squaring, SlantedSlotsStay) {
   EXPECT_TRUE(squared.wrong.empty());
 }
 
+// Slots of a row that lean by 2 m.
+MapSlot slanted(int place) {
+  MapSlot slot = Garage::slotAt(2, place);
+  slot.shape = SlotShape::kSlanted;
+  slot.corners[2].x() += 2.0;
+  slot.corners[3].x() += 2.0;
+  return slot;
+}
+
+// A corner of it worn off: 1.2 m in along its side.
+MapSlot slantedAndWorn(int place) {
+  MapSlot slot = slanted(place);
+  const Vector2d in = 1.2 * (slot.corners[2] - slot.corners[1]).normalized();
+  slot.corners[1] += in;
+  slot.corners[2] += in;
+  return slot;
+}
+
+TEST_F(Squaring, SlantedSlotsHaveTheirEntranceOnTheirRow) {
+  garage_.told.push_back(slanted(0));
+  garage_.told.push_back(slantedAndWorn(2));
+  const SquaredSlots squared = square();
+  ASSERT_EQ(squared.moved, std::vector<std::size_t>{7});
+  expectAt(garage_.told[7], slanted(2));
+  EXPECT_EQ(garage_.told[7].shape, SlotShape::kSlanted);
+}
+
+TEST_F(Squaring, AskewSlotsWithoutARowOrWithAnotherInTheirWayStay) {
+  garage_.told.push_back(slantedAndWorn(2));
+  for (Vector2d& corner : garage_.told[6].corners) corner.y() += 1.7;
+  EXPECT_TRUE(square().moved.empty());
+  garage_.told = {garage_.told.begin(), garage_.told.begin() + 6};
+  for (const int place : {0, 2}) garage_.told.push_back(slanted(place));
+  garage_.told.push_back(slantedAndWorn(2));
+  EXPECT_TRUE(square().moved.empty());
+}
+
 TEST_F(Squaring, WhereNoAxesAreKnownNothingChanges) {
   garage_.told = {misread(Garage::slotAt(0, 0))};
   const SquaredSlots squared = square();

@@ -219,8 +219,8 @@ ParkingMap FusedMapper::map(const std::string& name) const {
   map.objects = m.objects.objects();
   std::vector<SE2> way;
   for (const StampedPose& pose : finalTrajectory()) way.push_back(SE2::fromSE3(pose.T_world_body));
-  forgetUnseenGround(way, m.options.global_map.evidence.range_m, map.grid);
   forgetStrayPillars(map.objects, map.grid);
+  forgetUnseenGround(way, m.options.global_map.evidence.range_m, map.grid);
   trimColumnFeet(map.objects, map.grid);
   completeColumnFeet(map.objects, map.grid);
   map.slots = m.slots.slots(m.last_t_ns, map.objects);
