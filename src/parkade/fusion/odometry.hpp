@@ -12,12 +12,12 @@ namespace parkade {
 
 /// How the visual-inertial odometry errs between two frame sets, at least.
 struct OdometryNoiseOptions {
-  double translation = 0.001;
-  double yaw_deg = 0.005;
-  double height = 0.0017;
-  double standing = 0.0005;
+  double translation = 0.0008;
+  double yaw_deg = 0.004;
+  double height = 0.0013;
+  double standing = 0.0004;
   double degraded_factor = 5.0;
-  double told_share = 0.25;
+  double told_share = 0.15;
 
   void visit(OptionVisitor& v) {
     v.field("translation", translation, "m/sqrt(m)", "Drift of the place, a random walk.", 1e-5,

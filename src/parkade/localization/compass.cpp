@@ -90,7 +90,7 @@ std::optional<double> Compass::read(const SemanticFrame& frame, double expected_
 double CompassScatter::add(double off_odometry) {
   constexpr std::size_t kReadings = 15;
   constexpr double kPrior = 4.0;   // readings that the usual scatter counts for
-  constexpr double kShared = 2.0;  // of the error over the scatter: neighbours see the same lines
+  constexpr double kShared = 1.6;  // of the error over the scatter: neighbours see the same lines
   latest_.push_back(off_odometry);
   if (latest_.size() > kReadings) latest_.pop_front();
   double sum = 0.0;

@@ -29,10 +29,10 @@ struct SubmapOptions {
   double min_age_m = 3.0;
   double revisit_age_m = 30.0;
   double register_distance_m = 1.0;
-  double sigma_m = 0.03;
-  double sigma_deg = 0.15;
+  double sigma_m = 0.023;
+  double sigma_deg = 0.115;
   double gate_probability = 0.999;
-  double height_sigma_m = 0.03;
+  double height_sigma_m = 0.023;
   int max_anchors = 160;
 
   void visit(OptionVisitor& v) {
