@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <opencv2/imgproc.hpp>
 
 namespace parkade {
 namespace {
@@ -104,6 +105,41 @@ void forgetUnseenGround(const std::vector<SE2>& way, double range, LayeredGrid& 
     }
   }
   for (const Vector2i& index : unseen) grid.touch(kLayer, index) = GridCell();
+}
+
+void retreatFromUnseen(LayeredGrid& grid) {
+  constexpr double kBorder = 0.15;  // m
+  const auto bounds = grid.bounds(kLayer);
+  if (!bounds) return;
+  const int border = static_cast<int>(std::lround(kBorder / grid.resolution()));
+  const int beyond = border + 2;
+  const Vector2i origin = bounds->min - Vector2i::Constant(beyond);
+  const Vector2i size = bounds->max - bounds->min + Vector2i::Constant(2 * beyond + 1);
+  cv::Mat unseen(size.y(), size.x(), CV_8UC1, cv::Scalar(1));
+  const auto forEachKnown = [&](const auto& visit) {
+    for (const auto& [at, tile] : grid.tiles(kLayer)) {
+      for (int k = 0; k < LayeredGrid::kTileCells * LayeredGrid::kTileCells; ++k) {
+        const GridCell& cell = tile.cells[static_cast<std::size_t>(k)];
+        const Vector2i index = LayeredGrid::cellOf(at, k);
+        if (cell.known()) visit(index, cell, Vector2i(index - origin));
+      }
+    }
+  };
+  forEachKnown([&](const Vector2i&, const GridCell&, const Vector2i& p) {
+    unseen.at<std::uint8_t>(p.y(), p.x()) = 0;
+  });
+  const auto square = [](int reach) {
+    return cv::Mat(2 * reach + 1, 2 * reach + 1, CV_8UC1, cv::Scalar(1));
+  };
+  cv::erode(unseen, unseen, square(1));
+  cv::dilate(unseen, unseen, square(border + 1));
+  std::vector<Vector2i> lost;
+  forEachKnown([&](const Vector2i& index, const GridCell& cell, const Vector2i& p) {
+    const SemanticClass c = cell.believed();
+    const bool structure = c == SemanticClass::kWall || c == SemanticClass::kPillar;
+    if (!structure && unseen.at<std::uint8_t>(p.y(), p.x()) != 0) lost.push_back(index);
+  });
+  for (const Vector2i& index : lost) grid.touch(kLayer, index) = GridCell();
 }
 
 }  // namespace parkade

@@ -223,6 +223,7 @@ ParkingMap FusedMapper::map(const std::string& name) const {
   forgetUnseenGround(way, m.options.global_map.evidence.range_m, map.grid);
   trimColumnFeet(map.objects, map.grid);
   completeColumnFeet(map.objects, map.grid);
+  retreatFromUnseen(map.grid);
   map.slots = m.slots.slots(m.last_t_ns, map.objects);
   completeSlotLines(map.slots, map.grid);
   trimWheelStops(map.slots, way, map.grid);
