@@ -4,20 +4,19 @@
 
 #include <gtest/gtest.h>
 
+#include "parkade/mapping/layer_test_support.hpp"
+
 namespace parkade {
 namespace {
 
 using Eigen::Vector2d;
 
 void fill(LayeredGrid& grid, SemanticClass c, const Vector2d& min, const Vector2d& max) {
-  for (double x = min.x() + 0.025; x < max.x(); x += 0.05) {
-    for (double y = min.y() + 0.025; y < max.y(); y += 0.05)
-      grid.add(GridLayer::kZoneMarkers, {x, y}, c, 3.0F);
-  }
+  testing::fillLayer(grid, GridLayer::kZoneMarkers, c, min, max);
 }
 
 SemanticClass at(const LayeredGrid& grid, double x, double y) {
-  return grid.at(GridLayer::kZoneMarkers, grid.cellOf({x, y})).semantic_class;
+  return testing::classAt(grid, GridLayer::kZoneMarkers, x, y);
 }
 
 MapObject pillarAt(double x, double y) {

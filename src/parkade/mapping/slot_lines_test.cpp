@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "parkade/mapping/layer_test_support.hpp"
+
 namespace parkade {
 namespace {
 
@@ -13,17 +15,11 @@ constexpr double kWidth = 2.5;
 constexpr double kDepth = 5.0;
 
 void fill(LayeredGrid& grid, SemanticClass c, const Vector2d& min, const Vector2d& max) {
-  for (double x = min.x() + 0.025; x < max.x(); x += 0.05) {
-    for (double y = min.y() + 0.025; y < max.y(); y += 0.05) {
-      GridCell& cell = grid.touch(GridLayer::kParkingLines, grid.cellOf({x, y}));
-      cell = GridCell();
-      addEvidence(cell, c, 3.0F);
-    }
-  }
+  testing::fillLayer(grid, GridLayer::kParkingLines, c, min, max);
 }
 
 SemanticClass at(const LayeredGrid& grid, double x, double y) {
-  return grid.at(GridLayer::kParkingLines, grid.cellOf({x, y})).semantic_class;
+  return testing::classAt(grid, GridLayer::kParkingLines, x, y);
 }
 
 // Slots side by side, entrances along y = 0, rears at y = 5 m.

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "parkade/mapping/layer_test_support.hpp"
+
 namespace parkade {
 namespace {
 
@@ -12,21 +14,15 @@ using Eigen::Vector2d;
 constexpr double kRange = 8.5;
 
 void fill(LayeredGrid& grid, SemanticClass c, const Vector2d& min, const Vector2d& max) {
-  for (double x = min.x() + 0.025; x < max.x(); x += 0.05) {
-    for (double y = min.y() + 0.025; y < max.y(); y += 0.05) {
-      GridCell& cell = grid.touch(GridLayer::kZoneMarkers, grid.cellOf({x, y}));
-      cell = GridCell();
-      addEvidence(cell, c, 3.0F);
-    }
-  }
+  testing::fillLayer(grid, GridLayer::kZoneMarkers, c, min, max);
 }
 
 SemanticClass at(const LayeredGrid& grid, double x, double y) {
-  return grid.at(GridLayer::kZoneMarkers, grid.cellOf({x, y})).semantic_class;
+  return testing::classAt(grid, GridLayer::kZoneMarkers, x, y);
 }
 
 // Along the x axis, floor to both sides, a wall 3 m to the left of the way.
-class UnseenGround : public testing::Test {
+class UnseenGround : public ::testing::Test {
  protected:
   UnseenGround() {
     fill(grid, SemanticClass::kFloor, {0.0, -6.0}, {20.0, 6.0});
