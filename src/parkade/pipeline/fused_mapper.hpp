@@ -29,8 +29,10 @@ struct SubmapOptions {
   double min_age_m = 3.0;
   double revisit_age_m = 30.0;
   double register_distance_m = 1.0;
-  double sigma_m = 0.023;
-  double sigma_deg = 0.115;
+  double passage_sigma_m = 0.023;
+  double sigma_m = 0.01;
+  double sigma_deg = 0.06;
+  double doubling_distance_m = 5.0;
   double gate_probability = 0.999;
   double height_sigma_m = 0.023;
   int max_anchors = 160;
@@ -47,11 +49,19 @@ struct SubmapOptions {
             1000.0);
     v.field("register_distance_m", register_distance_m, "m", "Between frames that are registered.",
             0.1, 50.0);
-    v.field(
-        "sigma_m", sigma_m, "m",
-        "Error of a submap's features that all its frames share: calibration, levelling, labels.",
-        0.0, 1.0);
+    v.field("passage_sigma_m", passage_sigma_m, "m",
+            "Frames register to submaps of their own passage only where the odometry since then is "
+            "less sure than this.",
+            0.0, 1.0);
+    v.field("sigma_m", sigma_m, "m",
+            "Error that registrations to a submap share (calibration, levelling, labels), where "
+            "the frame lies on it.",
+            0.0, 1.0);
     v.field("sigma_deg", sigma_deg, "deg", "The same of their heading.", 0.0, 5.0);
+    v.field("doubling_distance_m", doubling_distance_m, "m",
+            "Both are twice as large where the frame's middle is so far from the submap's, and "
+            "grow with the square.",
+            0.1, 1000.0);
     v.field("gate_probability", gate_probability, "probability",
             "Registrations that are kept, of those that are right.", 0.5, 0.999999);
     v.field("height_sigma_m", height_sigma_m, "m",

@@ -51,6 +51,16 @@ void FusedMapper::Impl::addLoopEdge(const Stretch& stretch, const Registration& 
   edges.push_back(edge);
 }
 
+// By how much more a registration errs that overlaps at the edges of what both have seen: there
+// pitch and roll move what a picture shows, all of it together.
+double FusedMapper::Impl::farFactor(const SemanticFrame& frame, const Stretch& stretch,
+                                    const SE2& T_map_vehicle) const {
+  const Eigen::Vector2d middle = 0.5 * (stretch.submap.low() + stretch.submap.high());
+  const double distance = (T_map_vehicle * frame.labels.geometry.center - middle).norm();
+  const double ratio = distance / options.submaps.doubling_distance_m;
+  return 1.0 + ratio * ratio;
+}
+
 void FusedMapper::Impl::tryStretch(const SemanticFrame& frame, const View& view, std::size_t index,
                                    bool revisit) {
   const Stretch& stretch = stretches[index];
@@ -60,7 +70,7 @@ void FusedMapper::Impl::tryStretch(const SemanticFrame& frame, const View& view,
   // A submap of this passage knows nothing that the odometry did not see in the same pictures; its
   // own errors, which come again from picture to picture, would pull. It is for odometry that
   // fails.
-  if (!revisit && sigma < options.submaps.sigma_m) return;
+  if (!revisit && sigma < options.submaps.passage_sigma_m) return;
   ++(revisit ? statistics.revisits : statistics.registrations);
   Registration fit;
   // Half of the narrowest slot is the distance at which rows look alike.
@@ -86,9 +96,11 @@ void FusedMapper::Impl::tryStretch(const SemanticFrame& frame, const View& view,
   constexpr double kShared = 0.5;
   const double uses = std::max(1.0, kShared * (options.submaps.length_m + 5.0) /
                                         std::max(0.1, options.submaps.register_distance_m));
+  const double far = farFactor(frame, stretch, fit.T_map_vehicle);
+  const double place = far * options.submaps.sigma_m;
+  const double turn = far * options.submaps.sigma_deg * kDegree;
   Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
-  shared.diagonal() << std::pow(options.submaps.sigma_m, 2), std::pow(options.submaps.sigma_m, 2),
-      std::pow(options.submaps.sigma_deg * kDegree, 2);
+  shared.diagonal() << place * place, place * place, turn * turn;
   const Eigen::Matrix3d information = withSharedNoise(fit.information, uses * shared);
   const FilterUpdate update = filter.updateBetween(stretch.anchor, view.anchor, fit.T_map_vehicle,
                                                    information, options.submaps.gate_probability);
