@@ -11,6 +11,7 @@
 #include "parkade/geometry/planar.hpp"
 #include "parkade/mapping/map_check.hpp"
 #include "parkade/mapping/row_evidence.hpp"
+#include "parkade/mapping/slot_axes.hpp"
 #include "parkade/mapping/slot_row.hpp"
 
 namespace parkade::slot_rows {
@@ -29,10 +30,6 @@ constexpr double kOnLine = 0.1;  // m
 bool liesOn(const MapSlot& slot, const Line& line) {
   return std::abs(line.off(slot.corners[0])) < kOnLine &&
          std::abs(line.off(slot.corners[1])) < kOnLine;
-}
-
-Vector2d inwardOf(const MapSlot& slot) {
-  return (slot.corners[3] - slot.corners[0]).normalized();
 }
 
 // Those with sides along those of the i-th, whatever their entrances.
@@ -106,44 +103,12 @@ bool align(MapSlot& slot, const std::vector<const MapSlot*>& neighbours) {
   return true;
 }
 
-// rad, how far a direction is off the nearest of four axes.
-double offAxes(const Vector2d& v, double axis) {
-  const double angle = std::atan2(v.y(), v.x()) - axis;
-  return std::abs(angle - std::round(angle / M_PI_2) * M_PI_2);
-}
-
-constexpr double kOnAxis = 4.0 * M_PI / 180.0;
 constexpr double kAskew = 8.0 * M_PI / 180.0;
-
-// Of the garage: along most of the slots that are not slanted, weighed by how often they were seen.
-std::optional<double> findAxis(const std::vector<MapSlot>& slots) {
-  constexpr double kMost = 0.6;
-  constexpr double kLeast = 100.0;  // looks
-  double all = 0.0;
-  double most = 0.0;
-  double axis = 0.0;
-  for (const MapSlot& slot : slots) {
-    if (slot.shape == SlotShape::kSlanted) continue;
-    all += static_cast<double>(slot.observations);
-    const Vector2d inward = inwardOf(slot);
-    const double angle = std::atan2(inward.y(), inward.x());
-    double along = 0.0;
-    for (const MapSlot& other : slots) {
-      if (other.shape != SlotShape::kSlanted && offAxes(inwardOf(other), angle) < kOnAxis)
-        along += static_cast<double>(other.observations);
-    }
-    if (along <= most) continue;
-    most = along;
-    axis = angle;
-  }
-  if (most < kLeast || most < kMost * all) return std::nullopt;
-  return axis;
-}
 
 bool isMisread(const MapSlot& slot, double axis) {
   constexpr double kMore = 2.5;  // than its sides
-  const double sides = offAxes(inwardOf(slot), axis);
-  const double entrance = offAxes(slot.corners[1] - slot.corners[0], axis);
+  const double sides = std::abs(turnFromAxes(inwardOf(slot), axis));
+  const double entrance = std::abs(turnFromAxes(slot.corners[1] - slot.corners[0], axis));
   return slot.shape == SlotShape::kSlanted && sides < kAskew && entrance > kAskew &&
          entrance > kMore * sides;
 }
@@ -163,8 +128,9 @@ MapSlot squared(const MapSlot& slot) {
 
 // A slanted slot whose entrance runs neither along an aisle nor across one.
 bool hasAskewEntrance(const MapSlot& slot, double axis) {
-  return slot.shape == SlotShape::kSlanted && offAxes(inwardOf(slot), axis) > kAskew &&
-         offAxes(slot.corners[1] - slot.corners[0], axis) > kAskew;
+  return slot.shape == SlotShape::kSlanted &&
+         std::abs(turnFromAxes(inwardOf(slot), axis)) > kAskew &&
+         std::abs(turnFromAxes(slot.corners[1] - slot.corners[0], axis)) > kAskew;
 }
 
 // Its entrance along the axis through the corner that lies farther out, its sides as they are.

@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "parkade/mapping/row_test_support.hpp"
+#include "parkade/mapping/slot_axes.hpp"
 #include "parkade/mapping/slot_row.hpp"
 
 namespace parkade {
@@ -128,6 +130,44 @@ TEST_F(Squaring, WhereNoAxesAreKnownNothingChanges) {
   const SquaredSlots squared = square();
   EXPECT_TRUE(squared.moved.empty());
   EXPECT_TRUE(squared.wrong.empty());
+}
+
+// Turned about the middle of its entrance; its entrance alone as well.
+MapSlot turned(MapSlot slot, double sides_deg, double entrance_deg) {
+  const auto about = [&](const Vector2d& p, double degrees) -> Vector2d {
+    const double angle = degrees * M_PI / 180.0;
+    const Vector2d d = p - slot.entrance();
+    return slot.entrance() + Vector2d(std::cos(angle) * d.x() - std::sin(angle) * d.y(),
+                                      std::sin(angle) * d.x() + std::cos(angle) * d.y());
+  };
+  const Vector2d in =
+      about(slot.entrance() + slot.corners[3] - slot.corners[0], sides_deg) - slot.entrance();
+  MapSlot result = slot;
+  for (const std::size_t k : {0U, 1U}) {
+    result.corners[k] = about(slot.corners[k], entrance_deg);
+    result.corners[3 - k] = result.corners[k] + in;
+  }
+  return result;
+}
+
+TEST_F(Squaring, SlotsAFewDegreesOffAreTurnedToTheAxes) {
+  garage_.told.push_back(turned(Garage::slotAt(2, 0), 4.0, 4.0));
+  garage_.told.push_back(turned(Garage::slotAt(2, 2), 0.0, -6.0));
+  garage_.told.push_back(turned(Garage::slotAt(3, 1), 0.5, 1.0));
+  EXPECT_EQ(slot_rows::turnToAxes(garage_.told), (std::vector<std::size_t>{6, 7}));
+  for (const auto& [index, place] : {std::pair{6, 0}, std::pair{7, 2}}) {
+    const MapSlot& slot = garage_.told[static_cast<std::size_t>(index)];
+    for (std::size_t k = 0; k < 4; ++k)
+      EXPECT_LT((slot.corners[k] - Garage::slotAt(2, place).corners[k]).norm(), 0.03) << k;
+  }
+}
+
+TEST_F(Squaring, ARowThatIsTurnedAsAWholeStays) {
+  for (const int place : {0, 1, 2}) {
+    garage_.told.push_back(turned(Garage::slotAt(2, place), 4.0, 4.0));
+  }
+  garage_.told.push_back(turned(Garage::slotAt(3, 0), 4.2, 3.8));
+  EXPECT_TRUE(slot_rows::turnToAxes(garage_.told).empty());
 }
 
 TEST(SlotRow, OneMisreadCornerHardlyTurnsARow) {

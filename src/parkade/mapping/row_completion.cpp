@@ -16,6 +16,7 @@
 #include "parkade/mapping/row_evidence.hpp"
 #include "parkade/mapping/row_filling.hpp"
 #include "parkade/mapping/row_splitting.hpp"
+#include "parkade/mapping/slot_axes.hpp"
 #include "parkade/mapping/slot_likelihood.hpp"
 #include "parkade/mapping/slot_row.hpp"
 
@@ -64,6 +65,7 @@ class RowCompleter {
     const slot_rows::SquaredSlots squared = slot_rows::squareSlots(told_, grid);
     for (const std::size_t i : squared.moved) moved_.insert(told_[i].id);
     dropTold(squared.wrong);
+    for (const std::size_t i : slot_rows::turnToAxes(told_)) moved_.insert(told_[i].id);
     for (const std::size_t i : slot_rows::alignRows(told_)) moved_.insert(told_[i].id);
     gatherMissing();
     for (const SlotEvidence& evidence : evidence_) likelihood_.learn(evidence);
