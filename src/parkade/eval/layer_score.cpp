@@ -112,20 +112,16 @@ LayerRaster rasteriseLayer(const LayeredGrid& grid, GridLayer layer, const SE2& 
       fill(toMap(area.outline), resolution, raster.origin, 1, raster.truth);
     }
   }
-  for (const auto& [at, tile] : grid.tiles(layer)) {
-    for (int k = 0; k < LayeredGrid::kTileCells * LayeredGrid::kTileCells; ++k) {
-      const GridCell& cell = tile.cells[static_cast<std::size_t>(k)];
-      if (!cell.known()) continue;
-      const Eigen::Vector2i place = LayeredGrid::cellOf(at, k) - raster.origin;
-      const int column = place.x();
-      const int row = place.y();
-      if (availability && judged.at<std::uint8_t>(row, column) == 0) continue;
-      raster.known.at<std::uint8_t>(row, column) = 1;
-      if (cell.log_odds > 0 && cell.semantic_class != SemanticClass::kFloor) {
-        raster.present.at<std::uint8_t>(row, column) = 1;
-      }
+  grid.forEachKnown(layer, [&](const Eigen::Vector2i& index, const GridCell& cell) {
+    const Eigen::Vector2i place = index - raster.origin;
+    const int column = place.x();
+    const int row = place.y();
+    if (availability && judged.at<std::uint8_t>(row, column) == 0) return;
+    raster.known.at<std::uint8_t>(row, column) = 1;
+    if (cell.log_odds > 0 && cell.semantic_class != SemanticClass::kFloor) {
+      raster.present.at<std::uint8_t>(row, column) = 1;
     }
-  }
+  });
   return raster;
 }
 

@@ -36,8 +36,7 @@ struct CompassOptions {
             "Error of the axes as learned, which all headings read off them share.", 0.001, 10.0);
     v.field("sigma_deg", sigma_deg, "deg",
             "Least error of one heading by the axes, once a metre: 1.6 times their scatter, for "
-            "neighbours "
-            "in time see the same lines; scattered readings err by more.",
+            "neighbours in time see the same lines; scattered readings err by more.",
             0.01, 10.0);
   }
 };

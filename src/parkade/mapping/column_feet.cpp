@@ -67,9 +67,7 @@ void stampFoot(const Vector2d& middle, double radius, LayeredGrid& grid) {
   for (const Vector2i& cell : foot) {
     const SemanticClass c = grid.at(GridLayer::kZoneMarkers, cell).believed();
     if (c == SemanticClass::kWall || c == SemanticClass::kPillar) continue;
-    GridCell& changed = grid.touch(GridLayer::kZoneMarkers, cell);
-    changed = GridCell();
-    addEvidence(changed, SemanticClass::kPillar, kLogOdds);
+    grid.set(GridLayer::kZoneMarkers, cell, SemanticClass::kPillar, kLogOdds);
   }
 }
 
@@ -83,25 +81,21 @@ void trimColumnFeet(const std::vector<MapObject>& objects, LayeredGrid& grid) {
       if (!hasCounterpart(grid, cell, pillars[i])) behind.push_back(cell);
     }
   }
-  for (const Vector2i& cell : behind) grid.touch(GridLayer::kZoneMarkers, cell) = GridCell();
+  grid.forget(GridLayer::kZoneMarkers, behind);
 }
 
 void forgetStrayPillars(const std::vector<MapObject>& objects, LayeredGrid& grid) {
   const std::vector<Vector2d> pillars = positionsOf(SemanticClass::kPillar, objects);
   std::vector<Vector2i> strays;
-  for (const auto& [at, tile] : grid.tiles(GridLayer::kZoneMarkers)) {
-    for (int k = 0; k < LayeredGrid::kTileCells * LayeredGrid::kTileCells; ++k) {
-      if (tile.cells[static_cast<std::size_t>(k)].semantic_class != SemanticClass::kPillar)
-        continue;
-      const Vector2i cell = LayeredGrid::cellOf(at, k);
-      const Vector2d p = grid.centerOf(cell);
-      if (std::none_of(pillars.begin(), pillars.end(),
-                       [&](const Vector2d& pillar) { return (p - pillar).norm() <= kReach; })) {
-        strays.push_back(cell);
-      }
+  grid.forEachKnown(GridLayer::kZoneMarkers, [&](const Vector2i& index, const GridCell& cell) {
+    if (cell.semantic_class != SemanticClass::kPillar) return;
+    const Vector2d p = grid.centerOf(index);
+    if (std::none_of(pillars.begin(), pillars.end(),
+                     [&](const Vector2d& pillar) { return (p - pillar).norm() <= kReach; })) {
+      strays.push_back(index);
     }
-  }
-  for (const Vector2i& cell : strays) grid.touch(GridLayer::kZoneMarkers, cell) = GridCell();
+  });
+  grid.forget(GridLayer::kZoneMarkers, strays);
 }
 
 void completeColumnFeet(const std::vector<MapObject>& objects, LayeredGrid& grid) {

@@ -11,13 +11,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-void fill(LayeredGrid& grid, SemanticClass c, const Vector2d& min, const Vector2d& max) {
-  testing::fillLayer(grid, GridLayer::kZoneMarkers, c, min, max);
-}
-
-SemanticClass at(const LayeredGrid& grid, double x, double y) {
-  return testing::classAt(grid, GridLayer::kZoneMarkers, x, y);
-}
+constexpr auto fill = testing::fillLayer<GridLayer::kZoneMarkers>;
+constexpr auto at = testing::classAt<GridLayer::kZoneMarkers>;
 
 MapObject pillarAt(double x, double y) {
   MapObject pillar;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "parkade/types/grid_layer.hpp"
 #include "parkade/types/semantic_class.hpp"
@@ -82,6 +83,29 @@ class LayeredGrid {
   void add(GridLayer layer, const Eigen::Vector2d& p_world, SemanticClass semantic_class,
            float delta) {
     addEvidence(touch(layer, cellOf(p_world)), semantic_class, delta);
+  }
+
+  /// Makes a cell that class, whatever it held; log_odds above 0.
+  void set(GridLayer layer, const Eigen::Vector2i& cell, SemanticClass semantic_class,
+           float log_odds) {
+    GridCell& changed = touch(layer, cell);
+    changed = GridCell();
+    addEvidence(changed, semantic_class, log_odds);
+  }
+  /// Makes cells unknown again.
+  void forget(GridLayer layer, const std::vector<Eigen::Vector2i>& cells) {
+    for (const Eigen::Vector2i& cell : cells) touch(layer, cell) = GridCell();
+  }
+
+  /// visit(cell's index, the cell) for every known cell of a layer, tile by tile, row by row.
+  template <class Visit>
+  void forEachKnown(GridLayer layer, const Visit& visit) const {
+    for (const auto& [at, tile] : tiles(layer)) {
+      for (int k = 0; k < kTileCells * kTileCells; ++k) {
+        const GridCell& cell = tile.cells[static_cast<std::size_t>(k)];
+        if (cell.known()) visit(cellOf(at, k), cell);
+      }
+    }
   }
 
   /// Moves all log-odds of a layer towards zero by a factor in [0, 1]; cells that reach it are

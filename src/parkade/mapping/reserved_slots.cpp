@@ -177,14 +177,11 @@ std::vector<Vector2d> findPaintedSigns(const LayeredGrid& grid) {
   const Vector2i size = bounds->max - bounds->min + Vector2i::Ones();
   if (!checkPictureSize(size.cast<double>())) return signs;  // of a drive that went astray
   cv::Mat painted = cv::Mat::zeros(size.y(), size.x(), CV_8UC1);
-  for (const auto& [at, tile] : grid.tiles(GridLayer::kRoadMarkers)) {
-    for (int k = 0; k < LayeredGrid::kTileCells * LayeredGrid::kTileCells; ++k) {
-      const GridCell& cell = tile.cells[static_cast<std::size_t>(k)];
-      if (cell.believed() != SemanticClass::kPaintedNumber) continue;
-      const Vector2i p = LayeredGrid::cellOf(at, k) - bounds->min;
-      painted.at<std::uint8_t>(p.y(), p.x()) = 255;
-    }
-  }
+  grid.forEachKnown(GridLayer::kRoadMarkers, [&](const Vector2i& index, const GridCell& cell) {
+    if (cell.believed() != SemanticClass::kPaintedNumber) return;
+    const Vector2i p = index - bounds->min;
+    painted.at<std::uint8_t>(p.y(), p.x()) = 255;
+  });
   cv::Mat labels;
   cv::Mat stats;
   cv::Mat middles;

@@ -69,6 +69,12 @@ std::optional<Line> lineOf(const std::vector<const MapSlot*>& slots) {
   return best;
 }
 
+// As deep as given from its entrance on.
+void setDepth(const Vector2d& inward, double depth, MapSlot& slot) {
+  slot.corners[2] = slot.corners[1] + depth * inward;
+  slot.corners[3] = slot.corners[0] + depth * inward;
+}
+
 bool align(MapSlot& slot, const std::vector<const MapSlot*>& neighbours) {
   const std::optional<Line> line = lineOf(neighbours);
   if (!line) return false;
@@ -95,11 +101,9 @@ bool align(MapSlot& slot, const std::vector<const MapSlot*>& neighbours) {
   if ((nearest->shape == SlotShape::kParallel) != (slot.shape == SlotShape::kParallel))
     return false;
   slot.shape = nearest->shape;
-  const double depth = median(std::move(depths));
   slot.corners[0] += left * inward;
   slot.corners[1] += right * inward;
-  slot.corners[2] = slot.corners[1] + depth * inward;
-  slot.corners[3] = slot.corners[0] + depth * inward;
+  setDepth(inward, median(std::move(depths)), slot);
   return true;
 }
 
@@ -113,16 +117,21 @@ bool isMisread(const MapSlot& slot, double axis) {
          entrance > kMore * sides;
 }
 
-// Its entrance through the corner that lies farther out.
-MapSlot squared(const MapSlot& slot) {
+// The corner of the entrance that lies farther in, by so much along the sides, comes out; left
+// where ahead is negative.
+MapSlot withEvenEntrance(const MapSlot& slot, double ahead) {
   const Vector2d inward = inwardOf(slot);
   const double depth = (slot.corners[3] - slot.corners[0]).norm();
-  const double ahead = (slot.corners[1] - slot.corners[0]).dot(inward);
-  MapSlot square = slot;
+  MapSlot even = slot;
+  even.corners[ahead > 0.0 ? 1 : 0] -= std::abs(ahead) * inward;
+  setDepth(inward, depth, even);
+  return even;
+}
+
+// Its entrance square to its sides, through the corner that lies farther out.
+MapSlot squared(const MapSlot& slot) {
+  MapSlot square = withEvenEntrance(slot, (slot.corners[1] - slot.corners[0]).dot(inwardOf(slot)));
   square.shape = SlotShape::kPerpendicular;
-  square.corners[ahead > 0.0 ? 1 : 0] -= std::abs(ahead) * inward;
-  square.corners[2] = square.corners[1] + depth * inward;
-  square.corners[3] = square.corners[0] + depth * inward;
   return square;
 }
 
@@ -136,19 +145,8 @@ bool hasAskewEntrance(const MapSlot& slot, double axis) {
 // Its entrance along the axis through the corner that lies farther out, its sides as they are.
 MapSlot straightened(const MapSlot& slot, double axis) {
   const Vector2d front = slot.corners[1] - slot.corners[0];
-  const double turned = std::atan2(front.y(), front.x()) - axis;
-  const double angle = axis + std::round(turned / M_PI_2) * M_PI_2;
-  const Vector2d along(std::cos(angle), std::sin(angle));
-  Vector2d into(-along.y(), along.x());
-  const Vector2d inward = inwardOf(slot);
-  if (into.dot(inward) < 0.0) into = -into;
-  const double ahead = front.dot(into) / into.dot(inward);
-  const double depth = (slot.corners[3] - slot.corners[0]).norm();
-  MapSlot straight = slot;
-  straight.corners[ahead > 0.0 ? 1 : 0] -= std::abs(ahead) * inward;
-  straight.corners[2] = straight.corners[1] + depth * inward;
-  straight.corners[3] = straight.corners[0] + depth * inward;
-  return straight;
+  const Vector2d along = axisAlong(front, axis);
+  return withEvenEntrance(slot, cross(along, front) / cross(along, inwardOf(slot)));
 }
 
 // Whether one of the others has its entrance on the slot's line, and none lies where the slot does.

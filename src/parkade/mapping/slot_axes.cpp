@@ -12,12 +12,6 @@ using Eigen::Vector2d;
 
 constexpr double kOnAxis = 4.0 * M_PI / 180.0;
 
-// The axis next to a direction, unit.
-Vector2d axisAlong(const Vector2d& v, double axis) {
-  const double angle = std::atan2(v.y(), v.x()) - turnFromAxes(v, axis);
-  return {std::cos(angle), std::sin(angle)};
-}
-
 // By how much the sides of slots near an angle are turned from it on average, and their looks.
 struct Turn {
   double looks = 0.0;
@@ -83,6 +77,11 @@ MapSlot turned(const MapSlot& slot, double axis) {
 double turnFromAxes(const Vector2d& v, double axis) {
   const double angle = std::atan2(v.y(), v.x()) - axis;
   return angle - std::round(angle / M_PI_2) * M_PI_2;
+}
+
+Vector2d axisAlong(const Vector2d& v, double axis) {
+  const double angle = std::atan2(v.y(), v.x()) - turnFromAxes(v, axis);
+  return {std::cos(angle), std::sin(angle)};
 }
 
 std::optional<double> findAxis(const std::vector<MapSlot>& slots) {

@@ -26,6 +26,9 @@ std::optional<double> findAxis(const std::vector<MapSlot>& slots);
 /// rad, signed: how far a direction is turned from the nearest of the four axes.
 double turnFromAxes(const Eigen::Vector2d& v, double axis);
 
+/// The one of the four axes next to a direction; unit.
+Eigen::Vector2d axisAlong(const Eigen::Vector2d& v, double axis);
+
 /// Slots that are not slanted have their sides and entrances along the axes. Those with sides off
 /// by 1.5 to 8 degrees, or entrances by 2.5 to 8, are turned about the middle of their entrance, if
 /// no three others nearby (14 m) are turned as they are: worn lines tell directions badly, and a

@@ -249,9 +249,7 @@ void paint(const SlotEdge& edge, const Pattern& pattern, double width, LayeredGr
       }
       const Vector2d middle = grid.centerOf(cell) - edge.from;
       if (std::abs(middle.dot(across)) > 0.5 * width) continue;
-      GridCell& changed = grid.touch(GridLayer::kParkingLines, cell);
-      changed = GridCell();
-      addEvidence(changed, SemanticClass::kSlotLine, kLogOdds);
+      grid.set(GridLayer::kParkingLines, cell, SemanticClass::kSlotLine, kLogOdds);
     }
   }
 }

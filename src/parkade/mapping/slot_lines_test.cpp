@@ -14,13 +14,8 @@ using Eigen::Vector2d;
 constexpr double kWidth = 2.5;
 constexpr double kDepth = 5.0;
 
-void fill(LayeredGrid& grid, SemanticClass c, const Vector2d& min, const Vector2d& max) {
-  testing::fillLayer(grid, GridLayer::kParkingLines, c, min, max);
-}
-
-SemanticClass at(const LayeredGrid& grid, double x, double y) {
-  return testing::classAt(grid, GridLayer::kParkingLines, x, y);
-}
+constexpr auto fill = testing::fillLayer<GridLayer::kParkingLines>;
+constexpr auto at = testing::classAt<GridLayer::kParkingLines>;
 
 // Slots side by side, entrances along y = 0, rears at y = 5 m.
 std::vector<MapSlot> rowOf(int count) {

@@ -69,6 +69,7 @@ class Submap {
   /// Box around all features.
   [[nodiscard]] const Eigen::Vector2d& low() const { return low_; }
   [[nodiscard]] const Eigen::Vector2d& high() const { return high_; }
+  [[nodiscard]] Eigen::Vector2d middle() const { return 0.5 * (low_ + high_); }
 
  private:
   void addPoint(const PointFeature& point);

@@ -21,6 +21,11 @@ constexpr double kThick = 0.35;               // m of structure whose near side 
 // What a ray may meet in a cell.
 enum Cell : std::uint8_t { kOther = 0, kStructure = 1, kSeen = 2 };
 
+bool isStructure(const GridCell& cell) {
+  const SemanticClass c = cell.believed();
+  return c == SemanticClass::kWall || c == SemanticClass::kPillar;
+}
+
 /// The structure layer as an array.
 class Raster {
  public:
@@ -29,14 +34,11 @@ class Raster {
         min_(bounds.min),
         size_(bounds.max - bounds.min + Vector2i::Ones()),
         cells_(static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y()), kOther) {
-    for (const auto& [at, tile] : grid.tiles(kLayer)) {
-      for (int k = 0; k < LayeredGrid::kTileCells * LayeredGrid::kTileCells; ++k) {
-        const SemanticClass c = tile.cells[static_cast<std::size_t>(k)].believed();
-        if (c != SemanticClass::kWall && c != SemanticClass::kPillar) continue;
-        std::uint8_t* cell = find(LayeredGrid::cellOf(at, k));
-        if (cell != nullptr) *cell = kStructure;
-      }
-    }
+    grid.forEachKnown(kLayer, [&](const Vector2i& index, const GridCell& cell) {
+      if (!isStructure(cell)) return;
+      std::uint8_t* found = find(index);
+      if (found != nullptr) *found = kStructure;
+    });
   }
 
   [[nodiscard]] std::uint8_t* find(const Vector2i& cell) {
@@ -92,19 +94,15 @@ void forgetUnseenGround(const std::vector<SE2>& way, double range, LayeredGrid& 
     for (const double ahead : kEyes) raster.look(pose * Vector2d(ahead, 0.0), range);
   }
   std::vector<Vector2i> unseen;
-  for (const auto& [at, tile] : grid.tiles(kLayer)) {
-    for (int k = 0; k < LayeredGrid::kTileCells * LayeredGrid::kTileCells; ++k) {
-      const GridCell& cell = tile.cells[static_cast<std::size_t>(k)];
-      if (!cell.known() || cell.believed() == SemanticClass::kPillar) continue;
-      const Vector2i index = LayeredGrid::cellOf(at, k);
-      const bool seen = anyWithinACell(index, [&](const Vector2i& near) {
-        const std::uint8_t* found = raster.find(near);
-        return found != nullptr && (*found & kSeen) != 0;
-      });
-      if (!seen) unseen.push_back(index);
-    }
-  }
-  for (const Vector2i& index : unseen) grid.touch(kLayer, index) = GridCell();
+  grid.forEachKnown(kLayer, [&](const Vector2i& index, const GridCell& cell) {
+    if (cell.believed() == SemanticClass::kPillar) return;
+    const bool seen = anyWithinACell(index, [&](const Vector2i& near) {
+      const std::uint8_t* found = raster.find(near);
+      return found != nullptr && (*found & kSeen) != 0;
+    });
+    if (!seen) unseen.push_back(index);
+  });
+  grid.forget(kLayer, unseen);
 }
 
 void retreatFromUnseen(LayeredGrid& grid) {
@@ -116,16 +114,8 @@ void retreatFromUnseen(LayeredGrid& grid) {
   const Vector2i origin = bounds->min - Vector2i::Constant(beyond);
   const Vector2i size = bounds->max - bounds->min + Vector2i::Constant(2 * beyond + 1);
   cv::Mat unseen(size.y(), size.x(), CV_8UC1, cv::Scalar(1));
-  const auto forEachKnown = [&](const auto& visit) {
-    for (const auto& [at, tile] : grid.tiles(kLayer)) {
-      for (int k = 0; k < LayeredGrid::kTileCells * LayeredGrid::kTileCells; ++k) {
-        const GridCell& cell = tile.cells[static_cast<std::size_t>(k)];
-        const Vector2i index = LayeredGrid::cellOf(at, k);
-        if (cell.known()) visit(index, cell, Vector2i(index - origin));
-      }
-    }
-  };
-  forEachKnown([&](const Vector2i&, const GridCell&, const Vector2i& p) {
+  grid.forEachKnown(kLayer, [&](const Vector2i& index, const GridCell&) {
+    const Vector2i p = index - origin;
     unseen.at<std::uint8_t>(p.y(), p.x()) = 0;
   });
   const auto square = [](int reach) {
@@ -134,12 +124,11 @@ void retreatFromUnseen(LayeredGrid& grid) {
   cv::erode(unseen, unseen, square(1));
   cv::dilate(unseen, unseen, square(border + 1));
   std::vector<Vector2i> lost;
-  forEachKnown([&](const Vector2i& index, const GridCell& cell, const Vector2i& p) {
-    const SemanticClass c = cell.believed();
-    const bool structure = c == SemanticClass::kWall || c == SemanticClass::kPillar;
-    if (!structure && unseen.at<std::uint8_t>(p.y(), p.x()) != 0) lost.push_back(index);
+  grid.forEachKnown(kLayer, [&](const Vector2i& index, const GridCell& cell) {
+    const Vector2i p = index - origin;
+    if (!isStructure(cell) && unseen.at<std::uint8_t>(p.y(), p.x()) != 0) lost.push_back(index);
   });
-  for (const Vector2i& index : lost) grid.touch(kLayer, index) = GridCell();
+  grid.forget(kLayer, lost);
 }
 
 }  // namespace parkade

@@ -13,13 +13,8 @@ using Eigen::Vector2d;
 
 constexpr double kRange = 8.5;
 
-void fill(LayeredGrid& grid, SemanticClass c, const Vector2d& min, const Vector2d& max) {
-  testing::fillLayer(grid, GridLayer::kZoneMarkers, c, min, max);
-}
-
-SemanticClass at(const LayeredGrid& grid, double x, double y) {
-  return testing::classAt(grid, GridLayer::kZoneMarkers, x, y);
-}
+constexpr auto fill = testing::fillLayer<GridLayer::kZoneMarkers>;
+constexpr auto at = testing::classAt<GridLayer::kZoneMarkers>;
 
 // Along the x axis, floor to both sides, a wall 3 m to the left of the way.
 class UnseenGround : public ::testing::Test {

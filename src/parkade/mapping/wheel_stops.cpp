@@ -80,11 +80,13 @@ void trimWheelStops(const std::vector<MapSlot>& slots, const std::vector<SE2>& w
       edges.push_back(nearest);
     }
     const double edge = median(std::move(edges));
+    std::vector<Vector2i> behind;
     for (const auto& [column, cells] : columns) {
       for (const StopCell& c : cells) {
-        if (c.behind > edge + kStopDepth) grid.touch(GridLayer::kRoadMarkers, c.cell) = GridCell();
+        if (c.behind > edge + kStopDepth) behind.push_back(c.cell);
       }
     }
+    grid.forget(GridLayer::kRoadMarkers, behind);
   }
 }
 

@@ -11,13 +11,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-void fill(LayeredGrid& grid, SemanticClass c, const Vector2d& min, const Vector2d& max) {
-  testing::fillLayer(grid, GridLayer::kRoadMarkers, c, min, max);
-}
-
-SemanticClass at(const LayeredGrid& grid, double x, double y) {
-  return testing::classAt(grid, GridLayer::kRoadMarkers, x, y);
-}
+constexpr auto fill = testing::fillLayer<GridLayer::kRoadMarkers>;
+constexpr auto at = testing::classAt<GridLayer::kRoadMarkers>;
 
 // Entrance along y = 0, rear at y = 5 m.
 MapSlot slotAtOrigin() {

@@ -60,8 +60,6 @@ class FusedMapper::Impl {
   void readCompass(const SemanticFrame& frame, const View& view);
   void turnTo(double heading, double sigma, const View& view);
   void registerFrameToSubmaps(const SemanticFrame& frame, const View& view);
-  [[nodiscard]] double farFactor(const SemanticFrame& frame, const Stretch& stretch,
-                                 const SE2& T_map_vehicle) const;
   void tryStretch(const SemanticFrame& frame, const View& view, std::size_t index, bool revisit);
   void addLoopEdge(const Stretch& stretch, const Registration& fit, const View& view);
 

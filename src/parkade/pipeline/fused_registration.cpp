@@ -29,6 +29,15 @@ double largestSigma(const Eigen::Matrix2d& covariance) {
   return std::sqrt(std::max(0.0, eigen.eigenvalues()[1]));
 }
 
+// By how much more a registration errs that overlaps at the edges of what both have seen: there
+// pitch and roll move what a picture shows, all of it together.
+double farFactor(const SemanticFrame& frame, const Submap& submap, const SE2& T_map_vehicle,
+                 double doubling_distance) {
+  const double distance = (T_map_vehicle * frame.labels.geometry.center - submap.middle()).norm();
+  const double ratio = distance / doubling_distance;
+  return 1.0 + ratio * ratio;
+}
+
 }  // namespace
 
 void FusedMapper::Impl::addLoopEdge(const Stretch& stretch, const Registration& fit,
@@ -49,16 +58,6 @@ void FusedMapper::Impl::addLoopEdge(const Stretch& stretch, const Registration& 
     for (int j = 0; j < 3; ++j) edge.information(kAt[i], kAt[j]) = fit.information(i, j);
   }
   edges.push_back(edge);
-}
-
-// By how much more a registration errs that overlaps at the edges of what both have seen: there
-// pitch and roll move what a picture shows, all of it together.
-double FusedMapper::Impl::farFactor(const SemanticFrame& frame, const Stretch& stretch,
-                                    const SE2& T_map_vehicle) const {
-  const Eigen::Vector2d middle = 0.5 * (stretch.submap.low() + stretch.submap.high());
-  const double distance = (T_map_vehicle * frame.labels.geometry.center - middle).norm();
-  const double ratio = distance / options.submaps.doubling_distance_m;
-  return 1.0 + ratio * ratio;
 }
 
 void FusedMapper::Impl::tryStretch(const SemanticFrame& frame, const View& view, std::size_t index,
@@ -96,7 +95,8 @@ void FusedMapper::Impl::tryStretch(const SemanticFrame& frame, const View& view,
   constexpr double kShared = 0.5;
   const double uses = std::max(1.0, kShared * (options.submaps.length_m + 5.0) /
                                         std::max(0.1, options.submaps.register_distance_m));
-  const double far = farFactor(frame, stretch, fit.T_map_vehicle);
+  const double far =
+      farFactor(frame, stretch.submap, fit.T_map_vehicle, options.submaps.doubling_distance_m);
   const double place = far * options.submaps.sigma_m;
   const double turn = far * options.submaps.sigma_deg * kDegree;
   Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
@@ -178,8 +178,7 @@ void FusedMapper::Impl::registerFrameToSubmaps(const SemanticFrame& frame, const
       if (!recent) recent = i;
       continue;
     }
-    const Eigen::Vector2d middle = 0.5 * (s.submap.low() + s.submap.high());
-    const double distance = (p - middle).norm();
+    const double distance = (p - s.submap.middle()).norm();
     if (distance >= nearest) continue;
     nearest = distance;
     earlier = i;
