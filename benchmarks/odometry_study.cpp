@@ -24,7 +24,7 @@
 #include "parkade/io/sequence_reader.hpp"
 #include "parkade/io/trajectory_io.hpp"
 #include "parkade/pipeline/mapping_run.hpp"
-#include "parkade/vio/length_error.hpp"
+#include "parkade/vio/rig_error.hpp"
 
 namespace parkade {
 namespace {
@@ -248,6 +248,7 @@ Score judge(const Drive& drive, const VioOptions& options, const std::string& ou
   VioEstimator estimator(drive.rig, options);
   Trajectory estimate;
   PoseCovariances covariances;
+  RigErrorOnWay rig_error;
   std::size_t next = 0;
   const std::int64_t begin = cv::getTickCount();
   std::size_t wheel = 0;
@@ -260,8 +261,9 @@ Score judge(const Drive& drive, const VioOptions& options, const std::string& ou
       estimator.addWheel(drive.wheel[wheel++]);
     }
     PoseEstimate pose = estimator.addTracks(tracks);
-    addLengthError(estimator.lengthSigma(), pose);  // as a run tells it
     if (pose.health == Health::kInitialising) continue;
+    rig_error.advance(pose.T_odom_vehicle, pose.T_odom_vehicle, estimator.rigSigma());
+    rig_error.addTo(pose);  // as a run tells it
     estimate.push_back({pose.t_ns, pose.T_odom_vehicle});
     covariances.push_back({pose.t_ns, pose.covariance.topLeftCorner<6, 6>()});
   }

@@ -74,6 +74,7 @@ void FusedMapper::Impl::beginStretch(const View& view) {
   stretch.begin_m = view.travelled;
   stretch.pose = filter.anchor(view.anchor);
   stretch.applied = stretch.pose.T_world_vehicle;
+  stretch.rig_turn = rig_turn;
   stretch.T_odom_vehicle = view.odometry.T_odom_vehicle;
   history.beginAnchor(view.anchor, view.at);
   if (!stretches.empty()) {
@@ -99,6 +100,12 @@ void FusedMapper::Impl::beginStretch(const View& view) {
   }
 }
 
+void FusedMapper::Impl::enterSubmap(const SemanticFrame& frame, const View& view) {
+  Stretch& s = open();
+  s.submap.add(frame, between(s.anchor, view));
+  s.rig_turn += (frame.rig_turn - s.rig_turn) / static_cast<double>(s.submap.frames());
+}
+
 void FusedMapper::Impl::followCorrections() {
   std::unordered_map<std::int64_t, SE2> moved;
   constexpr double kNoticeable = 0.002;
@@ -106,14 +113,15 @@ void FusedMapper::Impl::followCorrections() {
   for (Stretch& s : stretches) {
     if (!filter.hasAnchor(s.anchor)) continue;
     s.pose = filter.anchor(s.anchor);
-    const SE2 step = s.applied.inverse() * s.pose.T_world_vehicle;
+    const SE2 step = s.applied.inverse() * placeOf(s);
     constexpr double kLever = 8.0;
     farthest = std::max(farthest, step.translation().norm() + kLever * std::abs(step.angle()));
   }
   if (farthest < kNoticeable) return;
   for (Stretch& s : stretches) {
-    moved[s.anchor] = s.pose.T_world_vehicle * s.applied.inverse();
-    s.applied = s.pose.T_world_vehicle;
+    const SE2 place = placeOf(s);
+    moved[s.anchor] = place * s.applied.inverse();
+    s.applied = place;
     global.setAnchor(s.anchor, s.applied);
   }
   const auto correction = [&](std::int64_t anchor) { return moved.at(anchor); };
@@ -176,6 +184,7 @@ PoseEstimate FusedMapper::addSemantics(const SemanticFrame& frame,
   }
   const Impl::View view = std::move(m.views.front());
   m.views.pop_front();
+  m.rig_turn = frame.rig_turn;
   const SubmapOptions& o = m.options.submaps;
   const bool begins = m.stretches.empty() || view.travelled - m.open().begin_m >= o.length_m ||
                       view.turned - m.turned_at_stretch >= o.rotation_deg * kDegree;
@@ -187,7 +196,7 @@ PoseEstimate FusedMapper::addSemantics(const SemanticFrame& frame,
   }
   if (view.travelled - m.last_entered >= o.frame_distance_m) {
     m.last_entered = view.travelled;
-    m.open().submap.add(frame, m.between(m.open().anchor, view));
+    m.enterSubmap(frame, view);
   }
   if (std::exchange(m.corrected, false)) m.followCorrections();
   m.enterMaps(frame, views, view);

@@ -25,8 +25,9 @@ class FusedMapper::Impl {
     double begin_m = 0.0;  // way travelled
     double end_m = 0.0;
     Submap submap;
-    GroundPose pose;  // as last known
-    SE2 applied;      // that the map was made with
+    GroundPose pose;        // as last known
+    SE2 applied;            // that the map was made with
+    double rig_turn = 0.0;  // mean of the frames in the submap
     SE3 T_odom_vehicle;
   };
   /// Where a picture was taken: an anchor that the filter holds until its features come.
@@ -53,6 +54,7 @@ class FusedMapper::Impl {
   void predict(const PoseEstimate& odometry);
   void hold();
   void beginStretch(const View& view);
+  void enterSubmap(const SemanticFrame& frame, const View& view);
   void enterMaps(const SemanticFrame& frame, const std::vector<LevelView>& level_views,
                  const View& view);
   void followCorrections();
@@ -67,6 +69,10 @@ class FusedMapper::Impl {
   [[nodiscard]] SE2 poseOf(const View& view) const {
     return filter.anchor(view.anchor).T_world_vehicle;
   }
+  /// Where a stretch's map belongs: cameras that are now known to be turned drew it turned.
+  [[nodiscard]] SE2 placeOf(const Stretch& s) const {
+    return s.pose.T_world_vehicle * SE2(rig_turn - s.rig_turn, {0.0, 0.0});
+  }
   /// The view seen from an anchor.
   [[nodiscard]] SE2 between(std::int64_t anchor, const View& view) const {
     return filter.anchor(anchor).T_world_vehicle.inverse() * poseOf(view);
@@ -77,8 +83,10 @@ class FusedMapper::Impl {
   Compass compass;
   CompassScatter compass_scatter;
   RowCompass rows;
-  std::int64_t axes = -1;     // heading reference of the filter, once the compass has learned
-  double axes_heading = 0.0;  // of that reference as it was then
+  std::int64_t axes = -1;      // heading reference of the filter, once the compass has learned
+  double axes_heading = 0.0;   // of that reference as it was then
+  double axes_rig_turn = 0.0;  // and of the cameras
+  double rig_turn = 0.0;       // of the newest frame
   PoseFilter filter;
   std::optional<PoseEstimate> odometry;  // newest
   std::optional<PoseEstimate> tracked;   // newest with a pose: odometry may start again

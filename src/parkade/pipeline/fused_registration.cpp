@@ -63,7 +63,9 @@ void FusedMapper::Impl::addLoopEdge(const Stretch& stretch, const Registration& 
 void FusedMapper::Impl::tryStretch(const SemanticFrame& frame, const View& view, std::size_t index,
                                    bool revisit) {
   const Stretch& stretch = stretches[index];
-  const SE2 expected = between(stretch.anchor, view);
+  // As the submap was drawn and this frame is: by cameras that were learned to be turned meanwhile.
+  const SE2 T_anchor_drawn(stretch.rig_turn - frame.rig_turn, {0.0, 0.0});
+  const SE2 expected = T_anchor_drawn * between(stretch.anchor, view);
   const Eigen::Matrix4d P = filter.relativeCovariance(stretch.anchor, view.anchor);
   const double sigma = largestSigma(P.topLeftCorner<2, 2>());
   // A submap of this passage knows nothing that the odometry did not see in the same pictures; its
@@ -90,13 +92,14 @@ void FusedMapper::Impl::tryStretch(const SemanticFrame& frame, const View& view,
     logDebug("registration to stretch {}: {}", stretch.anchor, fit.reason);
     return;
   }
+  const double far =
+      farFactor(frame, stretch.submap, fit.T_map_vehicle, options.submaps.doubling_distance_m);
+  fit.T_map_vehicle = T_anchor_drawn.inverse() * fit.T_map_vehicle;
   // All registrations to a submap share its error: together they may count it about once. Half the
   // number of those that follow at this spacing, for they do not share all of it.
   constexpr double kShared = 0.5;
   const double uses = std::max(1.0, kShared * (options.submaps.length_m + 5.0) /
                                         std::max(0.1, options.submaps.register_distance_m));
-  const double far =
-      farFactor(frame, stretch.submap, fit.T_map_vehicle, options.submaps.doubling_distance_m);
   const double place = far * options.submaps.sigma_m;
   const double turn = far * options.submaps.sigma_deg * kDegree;
   Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
@@ -138,11 +141,17 @@ void FusedMapper::Impl::readCompass(const SemanticFrame& frame, const View& view
   if (axes < 0) {
     axes = filter.addHeadingReference(options.compass.reference_sigma_deg * kDegree);
     axes_heading = filter.anchor(axes).T_world_vehicle.angle();
+    axes_rig_turn = frame.rig_turn;
   }
-  if (heading) turnTo(*heading, compass_scatter.add(*heading - in_odometry.angle()), view);
+  // Cameras that were learned to be turned since would turn all that is read.
+  const double learned = frame.rig_turn - axes_rig_turn;
+  if (heading) {
+    const double read = *heading + learned;
+    turnTo(read, compass_scatter.add(read - in_odometry.angle()), view);
+  }
   const double drift = poseOf(view).angle() - in_odometry.angle();
   if (const std::optional<RowReading> row = rows.read(*axis + axis_shift - drift)) {
-    turnTo(*axis - row->direction + in_odometry.angle(), row->sigma, view);
+    turnTo(*axis + learned - row->direction + in_odometry.angle(), row->sigma, view);
   }
 }
 

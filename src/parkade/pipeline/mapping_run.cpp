@@ -15,7 +15,7 @@
 #include "parkade/pipeline/semantic_queue.hpp"
 #include "parkade/pipeline/thread_pool.hpp"
 #include "parkade/tracking/overlap.hpp"
-#include "parkade/vio/length_error.hpp"
+#include "parkade/vio/rig_error.hpp"
 
 namespace parkade {
 namespace {
@@ -106,6 +106,7 @@ class MappingRun::Impl {
   Clock::time_point awaitDue(TimeNs t_ns);
 
   VioEstimator estimator_;
+  RigErrorOnWay rig_error_;
   SE3 T_vehicle_imu_;
   MotionPredictor state_;            // after the last frame set that finishEstimation() saw
   std::vector<ImuSample> last_imu_;  // of the last packet, which that state does not know
@@ -203,8 +204,9 @@ void MappingRun::Impl::estimate(Estimation& work) {
     semantics->enterDue(work.number);
     fused = mapper->estimate();
   }
-  addLengthError(estimator_.lengthSigma(), fused);
   if (estimate.health != Health::kInitialising) {
+    rig_error_.advance(estimate.T_odom_vehicle, fused.T_odom_vehicle, estimator_.rigSigma());
+    rig_error_.addTo(fused);
     odometry.push_back({estimate.t_ns, estimate.T_odom_vehicle});
     trajectory.push_back({fused.t_ns, fused.T_odom_vehicle});
   }

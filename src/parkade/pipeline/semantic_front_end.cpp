@@ -15,6 +15,18 @@
 #include "parkade/types/level_frame.hpp"
 
 namespace parkade {
+namespace {
+
+// About the vehicle's z: of all cameras, the mean of what each has turned.
+double commonTurn(const std::vector<SE3>& before, const std::vector<SE3>& after) {
+  double sum = 0.0;
+  for (std::size_t c = 0; c < before.size(); ++c) {
+    sum += (after[c].rotation() * before[c].rotation().inverse()).log().z();
+  }
+  return before.empty() ? 0.0 : sum / static_cast<double>(before.size());
+}
+
+}  // namespace
 
 struct SemanticFrontEnd::Impl {
   Impl(const Rig& r, const SemanticFrontEndOptions& o, SegmentationNetwork n)
@@ -40,6 +52,7 @@ struct SemanticFrontEnd::Impl {
     std::vector<Eigen::Vector3d> raised;  // key points above the floor, levelled vehicle frame
   };
   std::vector<SE3> cameras;    // where they are taken to sit
+  std::vector<SE3> told;       // and where the calibration says
   std::optional<View> newest;  // of the last addOdometry()
   std::optional<PoseEstimate> last_look;
   // Taken by take(), used by look(), which may work in another thread meanwhile.
@@ -66,6 +79,7 @@ Result<std::unique_ptr<SemanticFrontEnd>> SemanticFrontEnd::create(
     if (!masks[c].empty()) impl->stitcher.setMask(static_cast<int>(c), masks[c]);
   }
   for (const RigCamera& camera : rig.cameras) impl->cameras.push_back(camera.T_vehicle_cam);
+  impl->told = impl->cameras;
   impl->bev_views = viewsOf(impl->stitcher, rig);
   impl->objects = std::make_unique<ObjectExtractor>(impl->stitcher.geometry(), impl->bev_views,
                                                     options.objects);
@@ -152,6 +166,7 @@ Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames) {
   frame.labels = std::move(labels).value();
   frame.labels.t_ns = frames.t_ns;
   frame.attitude = view.floor.attitude;
+  frame.rig_turn = commonTurn(m.told, m.cameras);
   frame.attitude_sigma = std::max(view.floor.sigma_pitch, view.floor.sigma_roll);
   frame.line_points = linePointsFromLabels(frame.labels, frame.attitude_sigma, m.options.lines);
   frame.line_segments = segmentsOf(frame.line_points);

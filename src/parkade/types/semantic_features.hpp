@@ -111,6 +111,9 @@ struct SemanticFrame {
   static constexpr std::uint8_t kBehindEdge = 128;
   GroundAttitude attitude;      ///< that the picture was levelled with
   double attitude_sigma = 0.0;  ///< rad, of its pitch and roll
+  /// rad: how far the cameras, all together, had been turned about the car's z from where the
+  /// calibration says, when the picture was stitched.
+  double rig_turn = 0.0;
   std::vector<LinePoint> line_points;
   std::vector<LineSegment> line_segments;
   std::vector<SlotObservation> slots;

@@ -110,6 +110,7 @@ TEST(CarPriors, HoldTheCarInTheDark) {
   }
   VioOptions vio;
   vio.max_blind_s = 60.0;
+  vio.use_no_side_slip = false;
   const DriveScore without = run(drive, vio);
   vio.use_wheel = true;
   vio.use_no_side_slip = true;

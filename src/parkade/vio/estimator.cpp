@@ -62,6 +62,7 @@ VioEstimator::Impl::Impl(const Rig& rig, const VioOptions& options)
       window_.refinements.push_back(refinement);
     }
   }
+  is_car_ = rig.vehicle.has_value();
   if (rig.vehicle) wheel_track_ = rig.vehicle->track;
 }
 
@@ -201,7 +202,12 @@ void VioEstimator::Impl::optimise(const SolveOptions& options) {
 }
 
 void VioEstimator::Impl::addBodyVelocity(WindowFrame& frame) const {
-  if (options_.use_no_side_slip) frame.body_velocity_sigma.y() = options_.side_slip_sigma;
+  if (options_.use_no_side_slip && is_car_) {
+    const double turning = (frame.gyro - frame.bias.gyro).norm();
+    const double sideways = turning * frame.state.v_odom.norm();  // acceleration, m/s^2
+    frame.body_velocity_sigma.y() =
+        std::hypot(options_.side_slip_sigma, options_.side_slip_in_curves * sideways);
+  }
   if (options_.use_planar) frame.body_velocity_sigma.z() = options_.planar_sigma;
   if (!options_.use_wheel || wheels_.empty()) return;
   // The newest reading at or before the frame, or the first after it.
@@ -294,8 +300,8 @@ MotionPredictor VioEstimator::predictor() const {
 std::vector<Landmark> VioEstimator::landmarks() const {
   return impl_->landmarks();
 }
-double VioEstimator::lengthSigma() const {
-  return impl_->lengthSigma();
+RigSigma VioEstimator::rigSigma() const {
+  return impl_->rigSigma();
 }
 std::vector<CameraCalibrationEstimate> VioEstimator::calibration() const {
   return impl_->calibration();

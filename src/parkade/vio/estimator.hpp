@@ -14,6 +14,7 @@
 #include "parkade/types/trajectory.hpp"
 #include "parkade/vio/options.hpp"
 #include "parkade/vio/predictor.hpp"
+#include "parkade/vio/rig_error.hpp"
 
 namespace parkade {
 
@@ -74,9 +75,9 @@ class VioEstimator {
 
   /// One per camera where vio.calibration refines them, else empty. Before the start: as given.
   [[nodiscard]] std::vector<CameraCalibrationEstimate> calibration() const;
-  /// Relative standard deviation of all lengths, from what the cameras' refined places are
-  /// uncertain by (vio/length_error.hpp). 0 before the start and where they are not refined.
-  [[nodiscard]] double lengthSigma() const;
+  /// How uncertain the refined cameras are in what they share (vio/rig_error.hpp). 0 before the
+  /// start and where they are not refined.
+  [[nodiscard]] RigSigma rigSigma() const;
 
   /// Every frame set since the start, re-estimated with all that came after it: frames of the
   /// window as last solved, older ones corrected through the keyframes that left it; z points up

@@ -33,7 +33,7 @@ class VioEstimator::Impl {
   std::vector<Landmark> landmarks() const;
   Trajectory finalTrajectory() const;
   std::vector<CameraCalibrationEstimate> calibration() const;
-  double lengthSigma() const;
+  RigSigma rigSigma() const;
 
   VioStatistics statistics;
   TimeNs last_t_ns = 0;
@@ -95,6 +95,7 @@ class VioEstimator::Impl {
   [[nodiscard]] SolveOptions startOptions() const;
 
   VioOptions options_;
+  bool is_car_ = false;  // the vehicle frame's origin is below a rear axle
   double wheel_track_ = 0.0;
   ImuNoise noise_;
   TimeNs gap_ns_ = 0;

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "parkade/vio/estimator_impl.hpp"
-#include "parkade/vio/length_error.hpp"
+#include "parkade/vio/rig_error.hpp"
 
 namespace parkade {
 
@@ -92,19 +92,31 @@ std::vector<CameraCalibrationEstimate> VioEstimator::Impl::calibration() const {
   return result;
 }
 
-double VioEstimator::Impl::lengthSigma() const {
-  if (!initialised_ || global_covariance_.rows() != window_.globalSize()) return 0.0;
-  const std::size_t cameras = window_.refinements.size();
+RigSigma VioEstimator::Impl::rigSigma() const {
+  if (!initialised_ || global_covariance_.rows() != window_.globalSize()) return {};
+  const auto cameras = static_cast<Eigen::Index>(window_.refinements.size());
+  const Eigen::Matrix3d R_vehicle_imu = T_vehicle_imu_.rotation().matrix();
   std::vector<Eigen::Vector3d> places;
-  Eigen::MatrixXd covariance(3 * cameras, 3 * cameras);
-  for (std::size_t a = 0; a < cameras; ++a) {
-    places.push_back(window_.cameras[a].T_imu_cam.translation());
-    for (std::size_t b = 0; b < cameras; ++b) {
-      covariance.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b)) =
-          global_covariance_.block<3, 3>(Window::cameraGlobal(a), Window::cameraGlobal(b));
+  std::vector<Eigen::Matrix3d> axes;  // turns are told about the camera's own axes
+  for (const VioCamera& camera : window_.cameras) {
+    places.push_back(camera.T_imu_cam.translation());
+    axes.push_back(R_vehicle_imu * camera.T_imu_cam.rotation().matrix());
+  }
+  places.resize(window_.refinements.size());
+  Eigen::MatrixXd of_places(3 * cameras, 3 * cameras);
+  Eigen::MatrixXd of_turns(3 * cameras, 3 * cameras);
+  for (Eigen::Index a = 0; a < cameras; ++a) {
+    const auto ka = static_cast<std::size_t>(a);
+    for (Eigen::Index b = 0; b < cameras; ++b) {
+      const auto kb = static_cast<std::size_t>(b);
+      const auto both =
+          global_covariance_.block<6, 6>(Window::cameraGlobal(ka), Window::cameraGlobal(kb));
+      of_places.block<3, 3>(3 * a, 3 * b) = both.topLeftCorner<3, 3>();
+      of_turns.block<3, 3>(3 * a, 3 * b) =
+          axes[ka] * both.bottomRightCorner<3, 3>() * axes[kb].transpose();
     }
   }
-  return parkade::lengthSigma(places, covariance);
+  return {lengthSigma(places, of_places), commonTurnSigma(of_turns)};
 }
 
 }  // namespace parkade

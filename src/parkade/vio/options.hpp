@@ -139,8 +139,9 @@ struct VioOptions {
   bool use_wheel = false;
   double wheel_sigma = 0.05;
   double wheel_max_age_s = 0.1;
-  bool use_no_side_slip = false;
-  double side_slip_sigma = 0.05;
+  bool use_no_side_slip = true;
+  double side_slip_sigma = 0.01;
+  double side_slip_in_curves = 0.03;
   bool use_planar = false;
   double planar_sigma = 0.03;
 
@@ -166,8 +167,11 @@ struct VioOptions {
     v.field("wheel_max_age_s", wheel_max_age_s, "s",
             "Wheel readings older than this at a frame are not used.", 0.0, 10.0);
     v.field("use_no_side_slip", use_no_side_slip,
-            "Hold the sideways speed of the rear axle near zero.");
+            "Hold the sideways speed of the rear axle near zero, where the rig tells of a car.");
     v.field("side_slip_sigma", side_slip_sigma, "m/s", "Sideways speed, 1 sigma.", 1e-4, 10.0);
+    v.field("side_slip_in_curves", side_slip_in_curves, "s",
+            "What a sideways acceleration of 1 m/s^2 adds to that sigma, in squares: tyres slip.",
+            0.0, 10.0);
     v.field("use_planar", use_planar, "Hold the speed across the car's own floor plane near zero.");
     v.field("planar_sigma", planar_sigma, "m/s", "Speed across the floor plane, 1 sigma.", 1e-4,
             10.0);

@@ -11,7 +11,7 @@
 
 #include "parkade/core/random.hpp"
 #include "parkade/core/units.hpp"
-#include "parkade/vio/length_error.hpp"
+#include "parkade/vio/rig_error.hpp"
 
 namespace parkade::testing {
 namespace {
@@ -379,6 +379,7 @@ SimulatedDrive simulateDrive(const Rig& rig, const TrackSimulatorOptions& option
 
 std::vector<PoseEstimate> runDrive(const SimulatedDrive& drive, VioEstimator& estimator) {
   std::vector<PoseEstimate> estimates;
+  RigErrorOnWay rig_error;
   std::size_t next = 0;
   for (const TrackSet& frame : drive.frames) {
     while (next < drive.imu.size()) {
@@ -387,7 +388,10 @@ std::vector<PoseEstimate> runDrive(const SimulatedDrive& drive, VioEstimator& es
       if (t >= frame.t_ns) break;
     }
     estimates.push_back(estimator.addTracks(frame));
-    addLengthError(estimator.lengthSigma(), estimates.back());
+    PoseEstimate& now = estimates.back();
+    if (now.health == Health::kInitialising) continue;
+    rig_error.advance(now.T_odom_vehicle, now.T_odom_vehicle, estimator.rigSigma());
+    rig_error.addTo(now);
   }
   return estimates;
 }

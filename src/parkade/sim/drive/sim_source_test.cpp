@@ -209,6 +209,17 @@ TEST(Simulation, CalibrationErrorTurnsOnlyWhatTheReaderIsTold) {
   EXPECT_NEAR(distance, 0.016, 0.006);
 }
 
+TEST(Simulation, EveryGarageIsDrivenWithAWrongRigOfItsOwn) {
+  const auto told = [](const std::string& garage_seed) {
+    return simulate("sim:random/random?duration=1&calib_error_deg=0.5&garage_seed=" + garage_seed)
+        ->toldRig()
+        .cameras[0]
+        .T_vehicle_cam;
+  };
+  EXPECT_EQ(told("5100").matrix(), told("5100").matrix());
+  EXPECT_GT(angleBetween(told("5100").rotation(), told("5101").rotation()), 1e-3);
+}
+
 TEST(Simulation, WheelsAgreeWithTheDrive) {
   const auto simulation = simulate("sim:paper/test1?noise=0");
   double distance = 0.0;

@@ -37,10 +37,13 @@ SuspensionOptions suspensionOf(const VehicleShape& car, const SimSpec& spec) {
   return options;
 }
 
+// Another rig for each garage and seed: garages driven with one wrong rig would tell of that rig.
 Rig disturbed(const Rig& rig, const SimSpec& spec) {
   Rig told = rig;
+  const Random car =
+      randomOf(spec).fork("calibration", static_cast<std::uint64_t>(spec.garage_seed));
   for (std::size_t i = 0; i < told.cameras.size(); ++i) {
-    Random draws = randomOf(spec).fork("calibration", i);
+    Random draws = car.fork("camera", i);
     Vector6d error;
     for (int k = 0; k < 3; ++k) error[k] = draws.normal() * 0.01 * spec.calib_error_cm;
     for (int k = 3; k < 6; ++k) error[k] = draws.normal() * kDegree * spec.calib_error_deg;
