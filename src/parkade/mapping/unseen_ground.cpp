@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <opencv2/imgproc.hpp>
 
+#include "parkade/mapping/map_drawing.hpp"
+
 namespace parkade {
 namespace {
 
@@ -24,6 +26,11 @@ enum Cell : std::uint8_t { kOther = 0, kStructure = 1, kSeen = 2 };
 bool isStructure(const GridCell& cell) {
   const SemanticClass c = cell.believed();
   return c == SemanticClass::kWall || c == SemanticClass::kPillar;
+}
+
+// A drive that went astray: its map is too large for an array, and worth none.
+bool isAstray(const LayeredGrid::Bounds& bounds) {
+  return !checkPictureSize((bounds.max - bounds.min).cast<double>() + Vector2d::Ones());
 }
 
 /// The structure layer as an array.
@@ -84,7 +91,7 @@ class Raster {
 
 void forgetUnseenGround(const std::vector<SE2>& way, double range, LayeredGrid& grid) {
   const auto bounds = grid.bounds(kLayer);
-  if (!bounds || way.empty()) return;
+  if (!bounds || way.empty() || isAstray(*bounds)) return;
   Raster raster(grid, *bounds);
   const SE2* last = nullptr;
   for (const SE2& pose : way) {
@@ -108,7 +115,7 @@ void forgetUnseenGround(const std::vector<SE2>& way, double range, LayeredGrid& 
 void retreatFromUnseen(LayeredGrid& grid) {
   constexpr double kBorder = 0.15;  // m
   const auto bounds = grid.bounds(kLayer);
-  if (!bounds) return;
+  if (!bounds || isAstray(*bounds)) return;
   const int border = static_cast<int>(std::lround(kBorder / grid.resolution()));
   const int beyond = border + 2;
   const Vector2i origin = bounds->min - Vector2i::Constant(beyond);

@@ -67,6 +67,14 @@ TEST_F(UnseenGround, FloorRetreatsFromTheBorderOfWhatWasSeen) {
   EXPECT_EQ(at(grid, 0.025, 3.1), SemanticClass::kWall);
 }
 
+TEST_F(UnseenGround, OfADriveThatWentAstrayNothingChanges) {
+  const Vector2d far(2e6, 2e6);  // an array of this would not fit into any memory
+  grid.add(GridLayer::kZoneMarkers, far, SemanticClass::kFloor, 2.0F);
+  forgetUnseenGround({SE2()}, 8.5, grid);
+  retreatFromUnseen(grid);
+  EXPECT_TRUE(grid.at(GridLayer::kZoneMarkers, grid.cellOf(far)).known());
+}
+
 TEST_F(UnseenGround, WithoutAWayNothingChanges) {
   const LayeredGrid before = grid;
   forgetUnseenGround({}, kRange, grid);

@@ -138,9 +138,16 @@ void FusedMapper::Impl::enterMaps(const SemanticFrame& frame,
     local.update(labels, t_ns, SE2::fromSE3(view.odometry.T_odom_vehicle));
     global.update(labels, t_ns, open().anchor, between(open().anchor, view));
   }
+  wall_points.add(frame.raised, open().anchor, between(open().anchor, view));
   slots.update(frame.slots, t_ns, pose, open().anchor);
   objects.update(frame.objects, pose, filter.anchor(view.anchor).z, open().anchor,
                  frame.labels.labels.empty() ? nullptr : &frame.labels, level_views);
+}
+
+std::vector<Eigen::Vector3d> FusedMapper::Impl::wallPlaces() const {
+  std::unordered_map<std::int64_t, SE2> anchors;
+  for (const Stretch& s : stretches) anchors[s.anchor] = s.applied;
+  return wall_points.places([&](std::int64_t anchor) { return anchors.at(anchor); });
 }
 
 FusedMapper::FusedMapper(const FusedMapperOptions& options, std::vector<Eigen::Vector3d> viewpoints)
@@ -228,12 +235,13 @@ ParkingMap FusedMapper::map(const std::string& name) const {
   map.objects = m.objects.objects();
   std::vector<SE2> way;
   for (const StampedPose& pose : finalTrajectory()) way.push_back(SE2::fromSE3(pose.T_world_body));
+  map.slots = m.slots.slots(m.last_t_ns, map.objects);
+  drawWalls(findWallFaces(m.wallPlaces()), map.slots, way, map.grid);
   forgetStrayPillars(map.objects, map.grid);
   forgetUnseenGround(way, m.options.global_map.evidence.range_m, map.grid);
   trimColumnFeet(map.objects, map.grid);
   completeColumnFeet(map.objects, map.grid);
   retreatFromUnseen(map.grid);
-  map.slots = m.slots.slots(m.last_t_ns, map.objects);
   completeSlotLines(map.slots, map.grid);
   trimWheelStops(map.slots, way, map.grid);
   for (const Impl::Stretch& s : m.stretches) {

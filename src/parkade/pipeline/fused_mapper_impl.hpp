@@ -8,6 +8,7 @@
 
 #include "parkade/fusion/pose_filter.hpp"
 #include "parkade/mapping/submap.hpp"
+#include "parkade/mapping/wall_points.hpp"
 #include "parkade/pipeline/anchored_history.hpp"
 #include "parkade/pipeline/fused_mapper.hpp"
 
@@ -58,6 +59,7 @@ class FusedMapper::Impl {
   void enterMaps(const SemanticFrame& frame, const std::vector<LevelView>& level_views,
                  const View& view);
   void followCorrections();
+  [[nodiscard]] std::vector<Eigen::Vector3d> wallPlaces() const;
 
   void readCompass(const SemanticFrame& frame, const View& view);
   void turnTo(double heading, double sigma, const View& view);
@@ -104,6 +106,7 @@ class FusedMapper::Impl {
   GlobalMap global;
   SlotRegistry slots;
   ObjectRegistry objects;
+  WallPoints wall_points;
   TimeNs last_t_ns = 0;
   FusedMapperStatistics statistics;
 };

@@ -49,7 +49,7 @@ struct SemanticFrontEnd::Impl {
   struct View {
     GroundPlaneEstimate floor;
     PoseEstimate now;
-    std::vector<Eigen::Vector3d> raised;  // key points above the floor, levelled vehicle frame
+    std::vector<RaisedPoint> raised;
   };
   std::vector<SE3> cameras;    // where they are taken to sit
   std::vector<SE3> told;       // and where the calibration says
@@ -177,7 +177,8 @@ Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames) {
   FoundObjects found = m.objects->extract(frame.labels, frame.slots, frame.attitude_sigma);
   frame.objects = std::move(found.objects);
   frame.moving = m.tracker.update(found.agents, SE2::fromSE3(view.now.T_odom_vehicle), frames.t_ns);
-  frame.smear = m.smear->find(frame.labels, view.raised);
+  frame.raised = std::move(view.raised);
+  frame.smear = m.smear->find(frame.labels, frame.raised);
   m.feature_clock.add(since(begin));
   if (m.numbers != nullptr) {
     begin = Clock::now();

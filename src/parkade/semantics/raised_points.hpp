@@ -7,6 +7,7 @@
 #include "parkade/core/options.hpp"
 #include "parkade/geometry/se3.hpp"
 #include "parkade/types/landmark.hpp"
+#include "parkade/types/semantic_features.hpp"
 
 namespace parkade {
 
@@ -26,10 +27,9 @@ struct RaisedPointOptions {
   }
 };
 
-/// Key points that surely lie above the floor and near the car, levelled vehicle frame, m: they
-/// show something upright (SmearFinder).
-std::vector<Eigen::Vector3d> raisedPoints(const std::vector<Landmark>& landmarks,
-                                          const SE3& T_level_odom,
-                                          const RaisedPointOptions& options);
+/// Key points that surely lie above the floor and near the car: they show something upright
+/// (SmearFinder, mapping/wall_points.hpp).
+std::vector<RaisedPoint> raisedPoints(const std::vector<Landmark>& landmarks,
+                                      const SE3& T_level_odom, const RaisedPointOptions& options);
 
 }  // namespace parkade

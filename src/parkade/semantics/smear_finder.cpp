@@ -135,11 +135,12 @@ bool SmearFinder::standsOnStructure(const cv::Mat& labels, const Eigen::Vector2d
 }
 
 std::vector<float> SmearFinder::hiddenBehind(const cv::Mat& labels,
-                                             const std::vector<Eigen::Vector3d>& raised) const {
+                                             const std::vector<RaisedPoint>& raised) const {
   constexpr double kLeastBelow = 0.02;  // m below the camera: else drawn beyond every picture
   std::vector<float> hidden(views_.view_of.total(), 0.0F);
   const double step = 0.7 * geometry_.metres_per_px;
-  for (const Eigen::Vector3d& p : raised) {
+  for (const RaisedPoint& point : raised) {
+    const Eigen::Vector3d& p = point.p_level;
     const std::size_t index = views_.indexAt(geometry_, p.head<2>());
     if (index >= views_.views.size()) continue;
     const BevViews::View& view = views_.views[index];
@@ -165,8 +166,7 @@ std::vector<float> SmearFinder::hiddenBehind(const cv::Mat& labels,
   return hidden;
 }
 
-cv::Mat SmearFinder::find(const BevLabels& labels,
-                          const std::vector<Eigen::Vector3d>& raised) const {
+cv::Mat SmearFinder::find(const BevLabels& labels, const std::vector<RaisedPoint>& raised) const {
   PARKADE_CHECK(labels.labels.cols == geometry_.width_px &&
                     labels.labels.rows == geometry_.height_px && labels.labels.isContinuous(),
                 "labels of {} x {} px", labels.labels.cols, labels.labels.rows);

@@ -57,7 +57,7 @@ class SmearFinder {
   /// SemanticFrame::smear. labels: of the geometry given at first (checked). raised: key points
   /// above the floor, in the picture's levelled frame, m.
   [[nodiscard]] cv::Mat find(const BevLabels& labels,
-                             const std::vector<Eigen::Vector3d>& raised = {}) const;
+                             const std::vector<RaisedPoint>& raised = {}) const;
 
  private:
   struct Step {
@@ -73,7 +73,7 @@ class SmearFinder {
   void addRay(std::size_t view, int u, int v);
   /// By pixel, how far behind it key points hide the ground, m.
   [[nodiscard]] std::vector<float> hiddenBehind(const cv::Mat& labels,
-                                                const std::vector<Eigen::Vector3d>& raised) const;
+                                                const std::vector<RaisedPoint>& raised) const;
   [[nodiscard]] bool standsOnStructure(const cv::Mat& labels, const Eigen::Vector2d& foot,
                                        const Eigen::Vector2d& outwards) const;
 

@@ -148,7 +148,9 @@ struct Scene {
   }
   void hide(const std::vector<Vector3d>& raised) {
     const BevGeometry& g = floor.labels.geometry;
-    smear = SmearFinder(g, BevViews::fromMiddle(g, kEye), {}).find(floor.labels, raised);
+    std::vector<RaisedPoint> points;
+    for (const Vector3d& p : raised) points.push_back({points.size(), p});
+    smear = SmearFinder(g, BevViews::fromMiddle(g, kEye), {}).find(floor.labels, points);
   }
   [[nodiscard]] bool hidden(double x, double y) const {
     const Vector2d q = floor.labels.geometry.toPixel({x, y});

@@ -101,6 +101,13 @@ struct MovingObservation {
 };
 
 /// All semantic features of one frame set.
+/// A key point that surely lies above the floor, near the car.
+struct RaisedPoint {
+  std::uint64_t id = 0;  ///< of its landmark
+  /// Levelled vehicle frame, m.
+  Eigen::Vector3d p_level = Eigen::Vector3d::Zero();
+};
+
 struct SemanticFrame {
   BevLabels labels;
   /// CV_8UC1 of the labels' size, or empty: kSmear where a label is what a picture draws of
@@ -119,6 +126,7 @@ struct SemanticFrame {
   std::vector<SlotObservation> slots;
   std::vector<ObjectObservation> objects;
   std::vector<MovingObservation> moving;
+  std::vector<RaisedPoint> raised;
 };
 
 }  // namespace parkade

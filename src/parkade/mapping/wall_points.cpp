@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/mapping/wall_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "parkade/geometry/planar.hpp"
+
+namespace parkade {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector2i;
+using Eigen::Vector3d;
+
+// Whether a told slot reaches over a place by more than its lines and a bumper's play, or is
+// entered over it.
+bool inSlot(const std::vector<MapSlot>& slots, const Vector2d& p) {
+  constexpr double kInside = 0.3;    // m
+  constexpr double kEntrance = 0.4;  // m
+  return std::any_of(slots.begin(), slots.end(), [&](const MapSlot& slot) {
+    const Vector2d entrance = slot.corners[1] - slot.corners[0];
+    const double share =
+        std::clamp((p - slot.corners[0]).dot(entrance) / entrance.squaredNorm(), 0.0, 1.0);
+    if ((p - slot.corners[0] - share * entrance).norm() < kEntrance) return true;
+    Vector2d middle = Vector2d::Zero();
+    for (const Vector2d& corner : slot.corners) middle += 0.25 * corner;
+    std::array<Vector2d, 4> inner = slot.corners;
+    for (Vector2d& corner : inner) {
+      const Vector2d out = corner - middle;
+      corner -= std::min(1.0, kInside * M_SQRT2 / std::max(out.norm(), 1e-9)) * out;
+    }
+    return contains(inner, p);
+  });
+}
+
+bool besideVehicle(const LayeredGrid& grid, const Vector2d& p) {
+  constexpr int kCells = 2;
+  const Vector2i cell = grid.cellOf(p);
+  for (int dy = -kCells; dy <= kCells; ++dy) {
+    for (int dx = -kCells; dx <= kCells; ++dx) {
+      if (grid.at(GridLayer::kAvailability, cell + Vector2i(dx, dy)).believed() ==
+          SemanticClass::kVehicle) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+const SE2& nearestOf(const std::vector<SE2>& way, const Vector2d& p) {
+  return *std::min_element(way.begin(), way.end(), [&](const SE2& a, const SE2& b) {
+    return (a.translation() - p).squaredNorm() < (b.translation() - p).squaredNorm();
+  });
+}
+
+// Wall from the face's places on, and none before them, where labels are smeared.
+void drawFace(const std::vector<Vector2d>& places, const Vector2d& away, double step,
+              LayeredGrid& grid) {
+  constexpr double kDeep = 0.2;      // m
+  constexpr double kSmeared = 0.35;  // m before the face
+  constexpr float kLogOdds = 2.0F;
+  constexpr GridLayer kLayer = GridLayer::kZoneMarkers;
+  std::vector<Vector2i> before;
+  for (const Vector2d& p : places) {
+    for (double s = grid.resolution(); s < kSmeared; s += step) {
+      const Vector2i cell = grid.cellOf(p - s * away);
+      if (grid.at(kLayer, cell).believed() == SemanticClass::kWall) before.push_back(cell);
+    }
+  }
+  grid.forget(kLayer, before);
+  const int deep = static_cast<int>(std::lround(kDeep / step));
+  for (const Vector2d& p : places) {
+    for (int k = 0; k < deep; ++k) {
+      grid.set(kLayer, grid.cellOf(p + k * step * away), SemanticClass::kWall, kLogOdds);
+    }
+  }
+}
+
+}  // namespace
+
+void WallPoints::add(const std::vector<RaisedPoint>& points, std::int64_t anchor,
+                     const SE2& T_anchor_vehicle) {
+  for (const RaisedPoint& point : points) {
+    points_[point.id] = {anchor, T_anchor_vehicle * Vector2d(point.p_level.head<2>()),
+                         point.p_level.z()};
+  }
+}
+
+std::vector<Vector3d> WallPoints::places(const std::function<SE2(std::int64_t)>& poseOf) const {
+  std::vector<Vector3d> places;
+  for (const auto& [id, point] : points_) {
+    const Vector2d p = poseOf(point.anchor) * point.p_anchor;
+    places.emplace_back(p.x(), p.y(), point.z);
+  }
+  return places;
+}
+
+void drawWalls(const std::vector<WallFace>& faces, const std::vector<MapSlot>& slots,
+               const std::vector<SE2>& way, LayeredGrid& grid) {
+  constexpr double kRefused = 0.3;  // of a face, at most, that something else explains
+  constexpr double kHalfCar = 0.9;  // m
+  if (way.empty()) return;
+  const double step = 0.5 * grid.resolution();
+  for (const WallFace& face : faces) {
+    const double length = (face.to - face.from).norm();
+    const Vector2d along = (face.to - face.from) / length;
+    Vector2d away(-along.y(), along.x());
+    if (away.dot(nearestOf(way, 0.5 * (face.from + face.to)).translation() - face.from) > 0.0) {
+      away = -away;
+    }
+    std::vector<Vector2d> wall;
+    int refused = 0;
+    const int count = static_cast<int>(length / step) + 1;
+    for (int k = 0; k < count; ++k) {
+      const Vector2d p = face.from + k * step * along;
+      const bool elsewise = inSlot(slots, p) || besideVehicle(grid, p) ||
+                            (nearestOf(way, p).translation() - p).norm() < kHalfCar;
+      if (elsewise) {
+        ++refused;
+      } else {
+        wall.push_back(p);
+      }
+    }
+    if (refused <= kRefused * count) drawFace(wall, away, step, grid);
+  }
+}
+
+}  // namespace parkade
