@@ -21,10 +21,9 @@ constexpr double kBeside = 0.4;    // m: a wall has nothing so near to it, cars 
 constexpr double kGap = 3.0;       // m between points of one piece: doors and passages are wider
 constexpr double kShortest = 4.0;  // m
 constexpr int kFewest = 10;        // points
-constexpr double kOwnShare = 0.6;  // of the points beside a piece, those that lie on it
+constexpr double kOwnShare = 0.7;  // of the points beside a piece, those that lie on it
 constexpr double kCovered = 0.35;  // of a piece's half metres, those with a point
-constexpr double kLevel = 2.0;     // m of a piece, most of which have a high point, and a low one
-constexpr double kLevelled = 0.6;  // of those lengths
+constexpr double kLevelled = 0.5;  // of a piece's metres, those with a high point, and a low one
 
 // A point by how far it lies along a direction and across it.
 struct Turned {
@@ -151,13 +150,14 @@ struct Piece {
 // beside an end's last metres half are its own, and some are high.
 void trim(const Along& places, Piece& piece) {
   constexpr double kEnds[] = {0.75, 2.0};  // m
+  constexpr double kHighEnd = 2.0;
   constexpr double kOwnEnd = 0.5;
   const auto belongs = [&](double end, double inwards) {
     const auto count = [&](const std::vector<double>& of, double length) {
       return countBetween(of, std::min(end, end + inwards * length),
                           std::max(end, end + inwards * length));
     };
-    return count(places.high, kLevel) > 0.0 &&
+    return count(places.high, kHighEnd) > 0.0 &&
            std::all_of(std::begin(kEnds), std::end(kEnds), [&](double length) {
              return count(places.on, length) >= kOwnEnd * count(places.beside, length);
            });
@@ -174,8 +174,8 @@ bool isFace(const Along& places, const Piece& piece) {
   return end - begin >= kShortest && count >= kFewest &&
          count >= kOwnShare * countBetween(places.beside, begin, end) &&
          coverage(places.on, begin, end, 0.5) >= kCovered &&
-         coverage(places.high, begin, end, kLevel) >= kLevelled &&
-         coverage(places.low, begin, end, kLevel) >= kLevelled;
+         coverage(places.high, begin, end, 1.0) >= kLevelled &&
+         coverage(places.low, begin, end, 1.0) >= kLevelled;
 }
 
 // The pieces of a line between its gaps that are faces.
