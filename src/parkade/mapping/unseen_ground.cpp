@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "parkade/mapping/map_drawing.hpp"
+#include "parkade/mapping/way_eyes.hpp"
 
 namespace parkade {
 namespace {
@@ -15,10 +16,8 @@ using Eigen::Vector2d;
 using Eigen::Vector2i;
 
 constexpr GridLayer kLayer = GridLayer::kZoneMarkers;
-constexpr double kEyeSpacing = 1.0;           // m along the way
-constexpr double kEyes[] = {-1.0, 1.0, 3.0};  // m ahead of the rear axle: cameras all around a car
-constexpr double kOpaque = 0.1;               // m of structure that hide what lies behind
-constexpr double kThick = 0.35;               // m of structure whose near side is seen
+constexpr double kOpaque = 0.1;  // m of structure that hide what lies behind
+constexpr double kThick = 0.35;  // m of structure whose near side is seen
 
 // What a ray may meet in a cell.
 enum Cell : std::uint8_t { kOther = 0, kStructure = 1, kSeen = 2 };
@@ -93,13 +92,7 @@ void forgetUnseenGround(const std::vector<SE2>& way, double range, LayeredGrid& 
   const auto bounds = grid.bounds(kLayer);
   if (!bounds || way.empty() || isAstray(*bounds)) return;
   Raster raster(grid, *bounds);
-  const SE2* last = nullptr;
-  for (const SE2& pose : way) {
-    if (last != nullptr && (pose.translation() - last->translation()).norm() < kEyeSpacing)
-      continue;
-    last = &pose;
-    for (const double ahead : kEyes) raster.look(pose * Vector2d(ahead, 0.0), range);
-  }
+  forEachEye(way, [&](const Vector2d& eye) { raster.look(eye, range); });
   std::vector<Vector2i> unseen;
   grid.forEachKnown(kLayer, [&](const Vector2i& index, const GridCell& cell) {
     if (cell.believed() == SemanticClass::kPillar) return;
@@ -113,7 +106,7 @@ void forgetUnseenGround(const std::vector<SE2>& way, double range, LayeredGrid& 
 }
 
 void retreatFromUnseen(LayeredGrid& grid) {
-  constexpr double kBorder = 0.15;  // m
+  constexpr double kBorder = 0.25;  // m
   const auto bounds = grid.bounds(kLayer);
   if (!bounds || isAstray(*bounds)) return;
   const int border = static_cast<int>(std::lround(kBorder / grid.resolution()));

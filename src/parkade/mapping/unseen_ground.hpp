@@ -16,7 +16,7 @@ namespace parkade {
 void forgetUnseenGround(const std::vector<SE2>& way, double range, LayeredGrid& grid);
 
 /// Takes free space back from the borders of what was seen: floor of the structure layer within
-/// 0.15 m of unknown ground becomes unknown. Far borders err by as much (0.1 degrees of pitch move
+/// 0.25 m of unknown ground becomes unknown. Far borders err by as much (0.1 degrees of pitch move
 /// a point at 8 m by 0.11 m), and reach into walls. Unknown specks up to two cells wide count for
 /// nothing. docs/math/grid.md.
 void retreatFromUnseen(LayeredGrid& grid);

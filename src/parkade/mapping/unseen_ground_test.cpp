@@ -60,8 +60,8 @@ TEST_F(UnseenGround, FloorRetreatsFromTheBorderOfWhatWasSeen) {
   grid.touch(GridLayer::kZoneMarkers, grid.cellOf({10.0, -3.0})) = GridCell();
   retreatFromUnseen(grid);
   EXPECT_EQ(at(grid, 10.0, -5.975), SemanticClass::kUnknown);
-  EXPECT_EQ(at(grid, 10.0, -5.875), SemanticClass::kUnknown);
-  EXPECT_EQ(at(grid, 10.0, -5.8), SemanticClass::kFloor);
+  EXPECT_EQ(at(grid, 10.0, -5.775), SemanticClass::kUnknown);
+  EXPECT_EQ(at(grid, 10.0, -5.7), SemanticClass::kFloor);
   EXPECT_EQ(at(grid, 10.1, -3.0), SemanticClass::kFloor) << "beside a speck";
   EXPECT_EQ(at(grid, 10.0, 2.975), SemanticClass::kFloor) << "before a wall";
   EXPECT_EQ(at(grid, 0.025, 3.1), SemanticClass::kWall);

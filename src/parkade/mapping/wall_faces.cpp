@@ -44,6 +44,21 @@ std::vector<Turned> turn(const std::vector<Vector3d>& places, double angle) {
   return turned;
 }
 
+// A pillar beside a car makes their points one line, high and low.
+std::vector<Vector3d> withoutPillars(const std::vector<Vector3d>& places,
+                                     const std::vector<MapObject>& objects) {
+  constexpr double kReach = 0.8;  // m from a pillar's middle
+  std::vector<Vector3d> others;
+  for (const Vector3d& p : places) {
+    const bool taken = std::any_of(objects.begin(), objects.end(), [&](const MapObject& object) {
+      return object.semantic_class == SemanticClass::kPillar &&
+             (object.position.head<2>() - p.head<2>()).norm() < kReach;
+    });
+    if (!taken) others.push_back(p);
+  }
+  return others;
+}
+
 int binOf(double across) {
   return static_cast<int>(std::floor(across / kBin));
 }
@@ -236,11 +251,13 @@ void findAlong(const std::vector<Vector3d>& places, double angle, std::vector<Wa
 
 }  // namespace
 
-std::vector<WallFace> findWallFaces(const std::vector<Vector3d>& places) {
+std::vector<WallFace> findWallFaces(const std::vector<Vector3d>& places,
+                                    const std::vector<MapObject>& objects) {
+  const std::vector<Vector3d> others = withoutPillars(places, objects);
   std::vector<WallFace> faces;
-  const double angle = mainDirection(places);
-  findAlong(places, angle, faces);
-  findAlong(places, angle + 0.5 * M_PI, faces);
+  const double angle = mainDirection(others);
+  findAlong(others, angle, faces);
+  findAlong(others, angle + 0.5 * M_PI, faces);
   return faces;
 }
 

@@ -35,17 +35,24 @@ class WallPoints {
   std::map<std::uint64_t, Point> points_;
 };
 
+/// Where sight from the car's way first meets a wall of the structure layer, within `range` m and
+/// with no pillar before it: a place every 0.25 m, as places() tells them, once low and once high.
+std::vector<Eigen::Vector3d> wallFronts(const LayeredGrid& grid, const std::vector<SE2>& way,
+                                        double range);
+
 /// A straight piece of a wall's face, map frame, m.
 struct WallFace {
   Eigen::Vector2d from;
   Eigen::Vector2d to;
 };
 
-/// Faces of walls that key points (as WallPoints::places()) lie on: along the two square directions
-/// that most points line up with, straight pieces of at least 4 m with a point every 3 m and at
-/// least 10, that hold most of what lies within 0.4 m of them, and show it higher than cars are as
-/// well as lower than pipes run. docs/math/grid.md.
-std::vector<WallFace> findWallFaces(const std::vector<Eigen::Vector3d>& places);
+/// Faces of walls that places (WallPoints::places(), wallFronts()) lie on: along the two square
+/// directions that most points line up with, straight pieces of at least 4 m with a point every 3 m
+/// and at least 10, that hold most of what lies within 0.4 m of them, and show it higher than cars
+/// are as well as lower than pipes run. Points at pillars, of which objects tells, are theirs.
+/// docs/math/grid.md.
+std::vector<WallFace> findWallFaces(const std::vector<Eigen::Vector3d>& places,
+                                    const std::vector<MapObject>& objects);
 
 /// Draws faces into the structure layer as walls 0.2 m deep, on the side away from the car's way,
 /// but for those that run through told slots, parked vehicles or the way itself.

@@ -41,7 +41,7 @@ struct Scene {
   }
   // Whether a found face lies along the garage's line y = at between two places.
   [[nodiscard]] bool hasFace(double y, double from, double to) const {
-    const std::vector<WallFace> faces = findWallFaces(places);
+    const std::vector<WallFace> faces = findWallFaces(places, {});
     return std::any_of(faces.begin(), faces.end(), [&](const WallFace& face) {
       Vector2d a = T_map_garage.inverse() * face.from;
       Vector2d b = T_map_garage.inverse() * face.to;
@@ -59,7 +59,7 @@ TEST(WallPoints, LieOnStraightFaces) {
   scene.wall({0.0, 0.0}, {0.0, 10.0}, 40);
   EXPECT_TRUE(scene.hasFace(10.0, 0.0, 20.0));
   EXPECT_TRUE(scene.hasFace(10.0, 25.0, 35.0));
-  EXPECT_EQ(findWallFaces(scene.places).size(), 3U);
+  EXPECT_EQ(findWallFaces(scene.places, {}).size(), 3U);
 }
 
 TEST(WallPoints, PillarsInARowAreNoWall) {
@@ -69,15 +69,15 @@ TEST(WallPoints, PillarsInARowAreNoWall) {
     scene.wall({8.0 * k, 10.0}, {8.0 * k + 0.6, 10.0}, 20);
   }
   EXPECT_TRUE(scene.hasFace(0.0, 0.0, 30.0));
-  EXPECT_EQ(findWallFaces(scene.places).size(), 1U);
+  EXPECT_EQ(findWallFaces(scene.places, {}).size(), 1U);
 }
 
 TEST(WallPoints, WhatFillsARoomIsNoWall) {
   Scene scene;
   scene.wall({0.0, 0.0}, {30.0, 0.0}, 200);
   scene.box({0.0, 5.0}, {20.0, 7.0}, 800);
-  EXPECT_EQ(findWallFaces(scene.places).size(), 1U);
-  EXPECT_TRUE(findWallFaces({}).empty());
+  EXPECT_EQ(findWallFaces(scene.places, {}).size(), 1U);
+  EXPECT_TRUE(findWallFaces({}, {}).empty());
 }
 
 TEST(WallPoints, StayWithTheirAnchorsAndCountOnce) {
@@ -97,7 +97,7 @@ TEST(WallPoints, LowerThanCarsOrHigherThanThemAreNoWall) {
   scene.wall({0.0, 10.0}, {6.0, 10.0}, 60, 0.3, 1.5);   // bumpers
   scene.wall({0.0, 20.0}, {30.0, 20.0}, 90, 2.2, 2.7);  // a pipe
   EXPECT_TRUE(scene.hasFace(0.0, 0.0, 30.0));
-  EXPECT_EQ(findWallFaces(scene.places).size(), 1U);
+  EXPECT_EQ(findWallFaces(scene.places, {}).size(), 1U);
 }
 
 TEST(WallPoints, OfCarsBesideAWallDoNotCarryItOn) {
@@ -107,7 +107,23 @@ TEST(WallPoints, OfCarsBesideAWallDoNotCarryItOn) {
     scene.box({13.0 + 2.5 * k, 9.7}, {14.8 + 2.5 * k, 10.6}, 30);
   }
   EXPECT_TRUE(scene.hasFace(10.0, 0.0, 12.0));
-  EXPECT_EQ(findWallFaces(scene.places).size(), 1U);
+  EXPECT_EQ(findWallFaces(scene.places, {}).size(), 1U);
+}
+
+TEST(WallPoints, OfAPillarBesideACarAreNoWall) {
+  Scene scene;
+  scene.wall({0.0, 0.0}, {30.0, 0.0}, 200);
+  scene.wall({10.0, 10.0}, {14.5, 10.0}, 60, 0.3, 1.5);  // a car's side
+  scene.wall({12.0, 10.0}, {12.6, 10.0}, 30);
+  scene.wall({9.6, 10.0}, {10.2, 10.0}, 30);
+  MapObject pillar;
+  pillar.semantic_class = SemanticClass::kPillar;
+  std::vector<MapObject> pillars;
+  for (const double x : {12.3, 9.9}) {
+    pillar.position.head<2>() = scene.T_map_garage * Vector2d(x, 10.3);
+    pillars.push_back(pillar);
+  }
+  EXPECT_EQ(findWallFaces(scene.places, pillars).size(), 1U);
 }
 
 int wallCells(const LayeredGrid& grid) {
@@ -116,6 +132,23 @@ int wallCells(const LayeredGrid& grid) {
     count += cell.believed() == SemanticClass::kWall ? 1 : 0;
   });
   return count;
+}
+
+TEST(WallPoints, LabelledPiecesOfAWallTellTheWholeOfIt) {
+  LayeredGrid grid;
+  const std::vector<SE2> way = {SE2(0.0, {0.0, 0.0}), SE2(0.0, {5.0, 0.0}), SE2(0.0, {10.0, 0.0})};
+  for (double x = 0.0; x < 12.0; x += 0.05) {
+    for (double y = 0.0; y < 6.0; y += 0.05) {
+      const bool wall = y > 4.0 && std::fmod(x, 4.0) < 2.0;  // else taken for floor
+      grid.add(GridLayer::kZoneMarkers, {x, y}, wall ? SemanticClass::kWall : SemanticClass::kFloor,
+               2.0F);
+    }
+  }
+  const std::vector<WallFace> faces = findWallFaces(wallFronts(grid, way, 8.0), {});
+  ASSERT_EQ(faces.size(), 1U);
+  EXPECT_NEAR((faces[0].to - faces[0].from).norm(), 10.0, 0.6);
+  EXPECT_NEAR(faces[0].from.y(), 4.05, 0.06);
+  EXPECT_NEAR(faces[0].to.y(), 4.05, 0.06);
 }
 
 TEST(WallPoints, AreDrawnBehindTheFaceAndNotThroughSlotsCarsOrTheWay) {

@@ -236,9 +236,13 @@ ParkingMap FusedMapper::map(const std::string& name) const {
   std::vector<SE2> way;
   for (const StampedPose& pose : finalTrajectory()) way.push_back(SE2::fromSE3(pose.T_world_body));
   map.slots = m.slots.slots(m.last_t_ns, map.objects);
-  drawWalls(findWallFaces(m.wallPlaces()), map.slots, way, map.grid);
   forgetStrayPillars(map.objects, map.grid);
-  forgetUnseenGround(way, m.options.global_map.evidence.range_m, map.grid);
+  const double range = m.options.global_map.evidence.range_m;
+  // Labels are less exact than key points: by themselves, and once these have drawn what they show.
+  drawWalls(findWallFaces(m.wallPlaces(), map.objects), map.slots, way, map.grid);
+  forgetUnseenGround(way, range, map.grid);
+  drawWalls(findWallFaces(wallFronts(map.grid, way, range), map.objects), map.slots, way, map.grid);
+  forgetUnseenGround(way, range, map.grid);
   trimColumnFeet(map.objects, map.grid);
   completeColumnFeet(map.objects, map.grid);
   retreatFromUnseen(map.grid);
