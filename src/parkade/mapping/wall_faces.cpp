@@ -48,13 +48,14 @@ std::vector<Turned> turn(const std::vector<Vector3d>& places, double angle) {
 std::vector<Vector3d> withoutPillars(const std::vector<Vector3d>& places,
                                      const std::vector<MapObject>& objects) {
   constexpr double kReach = 0.8;  // m from a pillar's middle
+  const std::vector<Vector2d> pillars = positionsOf(SemanticClass::kPillar, objects);
   std::vector<Vector3d> others;
   for (const Vector3d& p : places) {
-    const bool taken = std::any_of(objects.begin(), objects.end(), [&](const MapObject& object) {
-      return object.semantic_class == SemanticClass::kPillar &&
-             (object.position.head<2>() - p.head<2>()).norm() < kReach;
-    });
-    if (!taken) others.push_back(p);
+    if (std::none_of(pillars.begin(), pillars.end(), [&](const Vector2d& pillar) {
+          return (pillar - p.head<2>()).norm() < kReach;
+        })) {
+      others.push_back(p);
+    }
   }
   return others;
 }
