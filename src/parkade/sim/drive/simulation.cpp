@@ -19,8 +19,16 @@ namespace {
 constexpr double kWheelRate = 100.0;        // Hz
 constexpr double kDefaultFrameRate = 10.0;  // Hz, where the rig does not say
 
-Random randomOf(const SimSpec& spec) {
+Random randomOfSeed(const SimSpec& spec) {
   return Random(static_cast<std::uint64_t>(spec.seed)).fork("drive");
+}
+
+// What the sensors, the load and the stops draw is another for each garage and route: twenty drives
+// of one seed with the same inertial noise and the same passengers would tell of one car on one day.
+Random randomOf(const SimSpec& spec) {
+  return randomOfSeed(spec)
+      .fork(spec.garage, static_cast<std::uint64_t>(spec.garage_seed))
+      .fork(spec.route);
 }
 
 SuspensionOptions suspensionOf(const VehicleShape& car, const SimSpec& spec) {
@@ -41,7 +49,7 @@ SuspensionOptions suspensionOf(const VehicleShape& car, const SimSpec& spec) {
 Rig disturbed(const Rig& rig, const SimSpec& spec) {
   Rig told = rig;
   const Random car =
-      randomOf(spec).fork("calibration", static_cast<std::uint64_t>(spec.garage_seed));
+      randomOfSeed(spec).fork("calibration", static_cast<std::uint64_t>(spec.garage_seed));
   for (std::size_t i = 0; i < told.cameras.size(); ++i) {
     Random draws = car.fork("camera", i);
     Vector6d error;
