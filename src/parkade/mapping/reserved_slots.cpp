@@ -10,6 +10,7 @@
 #include "parkade/core/median.hpp"
 #include "parkade/mapping/map_drawing.hpp"
 #include "parkade/mapping/row_pattern.hpp"
+#include "parkade/mapping/row_sides.hpp"
 
 namespace parkade::slot_rows {
 namespace {
@@ -88,25 +89,8 @@ class ReservedSlotFinder {
     return room;
   }
 
-  // Metres of paint that stand out along a side that begins at s.
   [[nodiscard]] double paintAt(const Row& row, const Pattern& pattern, double s) const {
-    constexpr double kDeepest = 4.0;  // m; farther in, cars and the picture's edge hide most
-    const Vector2d from = row.at(s);
-    const Vector2d to = from + std::min(kDeepest, pattern.side.norm()) * pattern.side.normalized();
-    return lookAlong(grid_, from, to).paint();
-  }
-
-  // The middle of the line near s, which looks the same for a hand's breadth to either side.
-  [[nodiscard]] double settle(const Row& row, const Pattern& pattern, double s) const {
-    constexpr double kReach = 0.25;  // m
-    double sum = 0.0;
-    double paint = 0.0;
-    for (double off = -kReach; off < kReach + 0.01; off += 0.05) {
-      const double at = paintAt(row, pattern, s + off);
-      sum += off * at;
-      paint += at;
-    }
-    return paint > 0.0 ? s + sum / paint : s;
+    return sideAt(grid_, row, pattern, s).paint();
   }
 
   // The sign is in the middle to a hand's breadth or two.
@@ -134,8 +118,8 @@ class ReservedSlotFinder {
       }
     }
     if (best) {
-      best->begin = settle(row, pattern, best->begin);
-      best->end = settle(row, pattern, best->end);
+      best->begin = settleSide(grid_, row, pattern, best->begin);
+      best->end = settleSide(grid_, row, pattern, best->end);
     }
     return best;
   }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "parkade/mapping/bay_ends.hpp"
+#include "parkade/mapping/lined_slots.hpp"
 #include "parkade/mapping/map_check.hpp"
 #include "parkade/mapping/reserved_slots.hpp"
 #include "parkade/mapping/row_alignment.hpp"
@@ -101,12 +102,13 @@ class RowCompleter {
     const std::vector<MapSlot> ends =
         slot_rows::findBayEnds(knownWith(result.added), pillars_, grid_, likelihood_, options_);
     result.added.insert(result.added.end(), ends.begin(), ends.end());
-    if (!ends.empty()) {
-      // A bay of which only the end was found has a row from now on.
-      takeBest(
-          slot_rows::findFillings(knownWith(result.added), pillars_, grid_, likelihood_, options_),
-          result.added);
-    }
+    // A bay of which only the end was found has a row from now on.
+    if (!ends.empty()) fillGaps(result.added);
+    const std::size_t known = result.added.size();
+    takeBest(slot_rows::findLinedSlots(knownWith(result.added), pillars_, grid_, likelihood_,
+                                       options_),
+             result.added);
+    if (result.added.size() > known) fillGaps(result.added);
     result.replaced = replaced_;
     for (std::size_t i = 0; i < told_.size(); ++i) {
       const bool is_new = told_[i].id == 0;
@@ -193,6 +195,12 @@ class RowCompleter {
       if (!takePlace(filling, added)) continue;
       added.insert(added.end(), filling.slots.begin(), filling.slots.end());
     }
+  }
+
+  // Of rows with what was added.
+  void fillGaps(std::vector<MapSlot>& added) {
+    takeBest(slot_rows::findFillings(knownWith(added), pillars_, grid_, likelihood_, options_),
+             added);
   }
 
   // Whether nothing that is likelier lies where the filling does; what is less likely goes.

@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 constexpr double kLowest = 0.3;    // m above the floor
 constexpr double kHigh = 1.7;      // m: higher than cars
 constexpr double kHighest = 2.8;   // m
-constexpr double kBin = 0.08;      // m across a line, when lines are looked for
+constexpr double kAcrossBin = 0.08;  // m across a line, when lines are looked for
 constexpr double kOnFace = 0.06;   // m off a face
 constexpr double kBeside = 0.4;    // m: a wall has nothing so near to it, cars have
 constexpr double kGap = 3.0;       // m between points of one piece: doors and passages are wider
@@ -61,7 +61,7 @@ std::vector<Vector3d> withoutPillars(const std::vector<Vector3d>& places,
 }
 
 int binOf(double across) {
-  return static_cast<int>(std::floor(across / kBin));
+  return static_cast<int>(std::floor(across / kAcrossBin));
 }
 
 std::map<int, int> histogram(const std::vector<Turned>& points) {
@@ -234,7 +234,7 @@ void findAlong(const std::vector<Vector3d>& places, double angle, std::vector<Wa
     if (most == counts.end() || most->second < kFewest) return;
     const int bin = most->first;
     most->second = 0;
-    const std::optional<Line> line = fitLine(points, (bin + 0.5) * kBin);
+    const std::optional<Line> line = fitLine(points, (bin + 0.5) * kAcrossBin);
     if (!line) continue;
     for (const auto& [begin, end] : piecesOf(placesBy(*line, points))) {
       const auto at = [&](double s) -> Vector2d {
