@@ -167,6 +167,8 @@ SlotEvidence gatherEvidence(const LayeredGrid& grid, const Corners& c) {
   evidence.right = probe.line(c[1] + kFromCorner * inward, c[1] + deep * inward, n);
   evidence.entrance =
       probe.line(c[0] + kFromCorner * u, c[1] - kFromCorner * u, Vector2d(-u.y(), u.x()));
+  evidence.rear =
+      probe.line(c[3] + kFromCorner * u, c[2] - kFromCorner * u, Vector2d(-u.y(), u.x()));
   evidence.divider = dividerOf(probe, c);
   int lanes = 0;
   int samples = 0;

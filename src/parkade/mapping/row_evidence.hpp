@@ -25,6 +25,7 @@ struct SlotEvidence {
   Line entrance;
   Line left;
   Line right;
+  Line rear;
   double divider = 0.0;       ///< of a line that goes in from the entrance between the sides
   double lane_ahead = 0.0;    ///< of the entrance's length: lane line on it
   double lines_inside = 0.0;  ///< of what is seen of the inside

@@ -25,6 +25,19 @@ bool showsStop(const SlotEvidence& evidence) {
   return evidence.stop_m2 > kArea;
 }
 
+// An entrance between lane lines passes for one of them now and then. Numbers and wheel stops are
+// in slots only, and lines on the three other sides bound nothing else.
+bool isSlotAnyway(const SlotEvidence& evidence) {
+  constexpr double kPaint = 0.1;  // m^2
+  if (evidence.number_m2 > kPaint || evidence.stop_m2 > kPaint) return true;
+  const auto is_plain = [](const SlotEvidence::Line& line) {
+    constexpr double kContrast = 0.6;
+    constexpr double kSeen = 1.5;  // m
+    return line.contrast() > kContrast && line.seen_m > kSeen;
+  };
+  return is_plain(evidence.left) && is_plain(evidence.right) && is_plain(evidence.rear);
+}
+
 // Of what few places but slots show.
 double logOddsOf(int showing, int slots) {
   constexpr double kElsewhere = 0.02;
@@ -113,9 +126,10 @@ bool isDenied(const SlotEvidence& evidence) {
   constexpr double kSign = 0.6;  // m^2, larger than numbers
   constexpr double kAside = 0.15;
   if (evidence.number_m2 > kSign && evidence.number_aside > kAside) return true;
+  const bool has_lane_ahead = evidence.lane_ahead > kLaneAhead && !isSlotAnyway(evidence);
   return evidence.markers_inside > kMarkers || evidence.lanes_inside > kLanes ||
          evidence.lines_inside > kLines || evidence.structure_inside > kStructure ||
-         evidence.lane_ahead > kLaneAhead || evidence.divider > kDivider;
+         has_lane_ahead || evidence.divider > kDivider;
 }
 
 void setFree(const SlotEvidence& evidence, MapSlot& slot) {
