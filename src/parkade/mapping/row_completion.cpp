@@ -105,9 +105,9 @@ class RowCompleter {
     // A bay of which only the end was found has a row from now on.
     if (!ends.empty()) fillGaps(result.added);
     const std::size_t known = result.added.size();
-    takeBest(slot_rows::findLinedSlots(knownWith(result.added), pillars_, grid_, likelihood_,
-                                       options_),
-             result.added);
+    takeBest(
+        slot_rows::findLinedSlots(knownWith(result.added), pillars_, grid_, likelihood_, options_),
+        result.added);
     if (result.added.size() > known) fillGaps(result.added);
     result.replaced = replaced_;
     for (std::size_t i = 0; i < told_.size(); ++i) {
