@@ -12,18 +12,18 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kLowest = 0.3;    // m above the floor
-constexpr double kHigh = 1.7;      // m: higher than cars
-constexpr double kHighest = 2.8;   // m
+constexpr double kLowest = 0.3;      // m above the floor
+constexpr double kHigh = 1.7;        // m: higher than cars
+constexpr double kHighest = 2.8;     // m
 constexpr double kAcrossBin = 0.08;  // m across a line, when lines are looked for
-constexpr double kOnFace = 0.06;   // m off a face
-constexpr double kBeside = 0.4;    // m: a wall has nothing so near to it, cars have
-constexpr double kGap = 3.0;       // m between points of one piece: doors and passages are wider
-constexpr double kShortest = 4.0;  // m
-constexpr int kFewest = 10;        // points
-constexpr double kOwnShare = 0.7;  // of the points beside a piece, those that lie on it
-constexpr double kCovered = 0.35;  // of a piece's half metres, those with a point
-constexpr double kLevelled = 0.5;  // of a piece's metres, those with a high point, and a low one
+constexpr double kOnFace = 0.06;     // m off a face
+constexpr double kBeside = 0.4;      // m: a wall has nothing so near to it, cars have
+constexpr double kGap = 3.0;         // m between points of one piece: doors and passages are wider
+constexpr double kShortest = 4.0;    // m
+constexpr int kFewest = 10;          // points
+constexpr double kOwnShare = 0.7;    // of the points beside a piece, those that lie on it
+constexpr double kCovered = 0.35;    // of a piece's half metres, those with a point
+constexpr double kLevelled = 0.5;    // of a piece's metres, those with a high point, and a low one
 
 // A point by how far it lies along a direction and across it.
 struct Turned {

@@ -24,7 +24,8 @@ Random randomOfSeed(const SimSpec& spec) {
 }
 
 // What the sensors, the load and the stops draw is another for each garage and route: twenty drives
-// of one seed with the same inertial noise and the same passengers would tell of one car on one day.
+// of one seed with the same inertial noise and the same passengers would tell of one car on one
+// day.
 Random randomOf(const SimSpec& spec) {
   return randomOfSeed(spec)
       .fork(spec.garage, static_cast<std::uint64_t>(spec.garage_seed))
