@@ -10,6 +10,7 @@
 #include "parkade/core/check.hpp"
 #include "parkade/core/units.hpp"
 #include "parkade/mapping/column_feet.hpp"
+#include "parkade/mapping/slot_availability.hpp"
 #include "parkade/mapping/slot_lines.hpp"
 #include "parkade/mapping/unseen_ground.hpp"
 #include "parkade/mapping/wheel_stops.hpp"
@@ -247,6 +248,7 @@ ParkingMap FusedMapper::map(const std::string& name) const {
   completeColumnFeet(map.objects, map.grid);
   retreatFromUnseen(map.grid);
   completeSlotLines(map.slots, map.grid);
+  layDownAvailability(map.slots, map.grid);
   trimWheelStops(map.slots, way, map.grid);
   for (const Impl::Stretch& s : m.stretches) {
     map.nodes.push_back(

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/mapping/slot_availability.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "parkade/geometry/planar.hpp"
+
+namespace parkade {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector2i;
+using Corners = std::array<Vector2d, 4>;
+
+// By so many metres inside each edge; slants count along the edges.
+Corners insetOf(const Corners& corners, double inset) {
+  Corners inner;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Vector2d ahead = corners[(k + 1) % 4] - corners[k];
+    const Vector2d behind = corners[(k + 3) % 4] - corners[k];
+    const double sine = std::abs(cross(ahead.normalized(), behind.normalized()));
+    inner[k] = corners[k] + inset / sine * (ahead.normalized() + behind.normalized());
+  }
+  return inner;
+}
+
+void fill(const Corners& corners, SemanticClass semantic_class, float log_odds, LayeredGrid& grid) {
+  Eigen::AlignedBox2d box;
+  for (const Vector2d& corner : corners) box.extend(corner);
+  const Vector2i first = grid.cellOf(box.min());
+  const Vector2i last = grid.cellOf(box.max());
+  for (int x = first.x(); x <= last.x(); ++x) {
+    for (int y = first.y(); y <= last.y(); ++y) {
+      const Vector2i cell(x, y);
+      if (!grid.at(GridLayer::kAvailability, cell).known()) continue;
+      if (!contains(corners, grid.centerOf(cell))) continue;
+      grid.set(GridLayer::kAvailability, cell, semantic_class, log_odds);
+    }
+  }
+}
+
+}  // namespace
+
+void layDownAvailability(const std::vector<MapSlot>& slots, LayeredGrid& grid) {
+  constexpr double kInset = 0.3;  // m
+  constexpr double kDecided = 0.65;
+  for (const MapSlot& slot : slots) {
+    const double occupied = 1.0 - slot.probability_free;
+    const double sure = std::max(occupied, slot.probability_free);
+    if (sure < kDecided) continue;
+    const auto log_odds = static_cast<float>(std::log(sure / std::max(1e-3, 1.0 - sure)));
+    fill(insetOf(slot.corners, kInset),
+         occupied > 0.5 ? SemanticClass::kVehicle : SemanticClass::kFloor, log_odds, grid);
+  }
+}
+
+}  // namespace parkade
