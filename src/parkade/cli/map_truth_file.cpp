@@ -4,9 +4,12 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "parkade/cli/marking_box.hpp"
 #include "parkade/eval/html_page.hpp"
@@ -44,6 +47,31 @@ bool isText(const sim::Marking& marking) {
          marking.meaning.rfind("accessible", 0) != 0;
 }
 
+// What lies within a metre outside the outer walls is wall to whoever sees them from inside; where
+// one drives in and out there is none.
+void addOuterWall(const sim::Garage& garage, const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+                  MapTruth& truth) {
+  const double length = (b - a).norm();
+  const Eigen::Vector2d along = (b - a) / length;
+  const Eigen::Vector2d out(along.y(), -along.x());
+  std::vector<std::pair<double, double>> openings;
+  for (const sim::Entrance& entrance : garage.entrances) {
+    constexpr double kOnWall = 0.01;  // m
+    const double s = (entrance.center - a).dot(along);
+    if (std::abs((entrance.center - a).dot(out)) > kOnWall || s < 0.0 || s > length) continue;
+    openings.emplace_back(s - 0.5 * entrance.width, s + 0.5 * entrance.width);
+  }
+  std::sort(openings.begin(), openings.end());
+  openings.emplace_back(length, length);
+  double from = 0.0;
+  for (const auto& [begin, end] : openings) {
+    const Eigen::Vector2d left = a + from * along;
+    const Eigen::Vector2d right = a + begin * along;
+    truth.areas.push_back({SemanticClass::kWall, {left, right, right + out, left + out}});
+    from = end;
+  }
+}
+
 void addAreas(const sim::Garage& garage, MapTruth& truth) {
   for (const sim::Marking& marking : garage.markings) {
     for (const Polygon& polygon : marking.polygons) {
@@ -56,13 +84,8 @@ void addAreas(const sim::Garage& garage, MapTruth& truth) {
   for (const sim::Room& room : garage.rooms) {
     truth.areas.push_back({SemanticClass::kWall, box(room.min, room.max)});
   }
-  // What lies within a metre outside the outer walls is wall to whoever sees them from inside.
   for (std::size_t i = 0; i < garage.outline.size(); ++i) {
-    const Eigen::Vector2d& a = garage.outline[i];
-    const Eigen::Vector2d& b = garage.outline[(i + 1) % garage.outline.size()];
-    const Eigen::Vector2d along = (b - a).normalized();
-    const Eigen::Vector2d out(along.y(), -along.x());
-    truth.areas.push_back({SemanticClass::kWall, {a, b, b + out, a + out}});
+    addOuterWall(garage, garage.outline[i], garage.outline[(i + 1) % garage.outline.size()], truth);
   }
 }
 
