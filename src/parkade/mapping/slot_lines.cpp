@@ -212,7 +212,9 @@ double paintedLogOdds(const SlotEdge& edge, const Pattern& pattern) {
     sum += kRepeat * (edge.bins[k].shows ? std::log(share / kChance)
                                          : std::log((1.0 - share) / (1.0 - kChance)));
   }
-  return std::log(pattern.painted / (1.0 - pattern.painted)) + std::max(kWorn, sum);
+  // A slot has sides, whatever the wear: bare floor does not speak against them.
+  const double worn = edge.kind == SlotEdgeKind::kSide ? 0.0 : kWorn;
+  return std::log(pattern.painted / (1.0 - pattern.painted)) + std::max(worn, sum);
 }
 
 double lineWidth(const std::vector<SlotEdge>& edges, const LayeredGrid& grid) {

@@ -53,6 +53,17 @@ TEST(SlotLines, SidesGoOnAsFarAsThoseOfOtherSlotsDo) {
   EXPECT_EQ(at(grid, 3.7, 0.0), SemanticClass::kFloor) << "no slot shows a line along its entrance";
 }
 
+// All of it worn off, and of one entrance among painted ones.
+TEST(SlotLines, ASlotHasSidesWhateverTheWearAndAnEntranceLineOnlyWhereItShows) {
+  LayeredGrid grid = sidesOf(20, 4.0);
+  fill(grid, SemanticClass::kSlotLine, {0.0, -0.05}, {20 * kWidth, 0.05});
+  fill(grid, SemanticClass::kFloor, {3 * kWidth - 0.2, 0.1}, {3 * kWidth + 0.2, 4.5});
+  fill(grid, SemanticClass::kFloor, {7 * kWidth + 0.1, -0.1}, {8 * kWidth - 0.1, 0.1});
+  completeSlotLines(rowOf(20), grid);
+  EXPECT_EQ(at(grid, 3 * kWidth, 2.0), SemanticClass::kSlotLine);
+  EXPECT_EQ(at(grid, 7.5 * kWidth, 0.0), SemanticClass::kFloor);
+}
+
 TEST(SlotLines, FollowTheLineAndNotTheSlot) {
   LayeredGrid grid = sidesOf(12, 1.5, 0.12);
   completeSlotLines(rowOf(12), grid);
