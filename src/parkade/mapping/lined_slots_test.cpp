@@ -38,12 +38,6 @@ Garage fullBays() {
   return garage;
 }
 
-// A lane line on the entrance, whatever was painted there.
-void paintLaneAhead(Garage& garage, const MapSlot& slot) {
-  garage.fill(GridLayer::kParkingLines, SemanticClass::kLaneLine,
-              slot.corners[0] + Vector2d(0.1, -0.1), slot.corners[1] + Vector2d(-0.1, 0.1));
-}
-
 TEST(LinedSlots, WideOnesAtTheEndOfARow) {
   Garage garage = fullBays();
   for (const int place : {0, 1}) garage.paint(wideSlot(place));
@@ -80,36 +74,37 @@ TEST(LinedSlots, TwoLinesAloneBoundNone) {
   EXPECT_EQ(garage.complete().added.size(), 1U);
 }
 
-// An entrance that was taken for a lane line.
-TEST(LinedSlots, ALaneLineAheadDeniesNoneThatHoldsAWheelStop) {
+const MapSlot kMissing = Garage::slotAt(1, 1);
+
+// A slot between others whose entrance was taken for a lane line.
+Garage withLaneAhead() {
   Garage garage;
   garage.tell(1, {0, 2});
   garage.tell(2, {0, 1, 2});
   garage.paintTold();
-  const MapSlot missing = Garage::slotAt(1, 1);
-  garage.paint(missing);
-  paintLaneAhead(garage, missing);
+  garage.paint(kMissing);
+  garage.fill(GridLayer::kParkingLines, SemanticClass::kLaneLine,
+              kMissing.corners[0] + Vector2d(0.1, -0.1), kMissing.corners[1] + Vector2d(-0.1, 0.1));
+  return garage;
+}
+
+TEST(LaneAhead, DeniesNoSlotThatHoldsAWheelStop) {
+  Garage garage = withLaneAhead();
   EXPECT_TRUE(garage.complete().added.empty());
-  garage.stop(missing);
+  garage.stop(kMissing);
   const RowCompletion rows = garage.complete();
   ASSERT_EQ(rows.added.size(), 1U);
-  expectAt(rows.added[0], missing);
+  expectAt(rows.added[0], kMissing);
 }
 
 // Closed all around, as slots along a wall are.
-TEST(LinedSlots, NorOneThatLinesBoundOnThreeSides) {
-  Garage garage;
-  garage.tell(1, {0, 2});
-  garage.tell(2, {0, 1, 2});
-  garage.paintTold();
-  const MapSlot missing = Garage::slotAt(1, 1);
-  garage.paint(missing);
-  paintLaneAhead(garage, missing);
+TEST(LaneAhead, DeniesNoSlotThatLinesBoundOnThreeSides) {
+  Garage garage = withLaneAhead();
   garage.fill(GridLayer::kParkingLines, SemanticClass::kSlotLine,
-              missing.corners[3] - Vector2d(0.0, 0.05), missing.corners[2] + Vector2d(0.0, 0.05));
+              kMissing.corners[3] - Vector2d(0.0, 0.05), kMissing.corners[2] + Vector2d(0.0, 0.05));
   const RowCompletion rows = garage.complete();
   ASSERT_EQ(rows.added.size(), 1U);
-  expectAt(rows.added[0], missing);
+  expectAt(rows.added[0], kMissing);
 }
 
 }  // namespace
