@@ -4,7 +4,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -54,14 +53,7 @@ void addOuterWall(const sim::Garage& garage, const Eigen::Vector2d& a, const Eig
   const double length = (b - a).norm();
   const Eigen::Vector2d along = (b - a) / length;
   const Eigen::Vector2d out(along.y(), -along.x());
-  std::vector<std::pair<double, double>> openings;
-  for (const sim::Entrance& entrance : garage.entrances) {
-    constexpr double kOnWall = 0.01;  // m
-    const double s = (entrance.center - a).dot(along);
-    if (std::abs((entrance.center - a).dot(out)) > kOnWall || s < 0.0 || s > length) continue;
-    openings.emplace_back(s - 0.5 * entrance.width, s + 0.5 * entrance.width);
-  }
-  std::sort(openings.begin(), openings.end());
+  std::vector<std::pair<double, double>> openings = garage.openings(a, b);
   openings.emplace_back(length, length);
   double from = 0.0;
   for (const auto& [begin, end] : openings) {

@@ -50,4 +50,21 @@ double Garage::surfaceHeight(const Eigen::Vector2d& p) const {
   return height;
 }
 
+std::vector<std::pair<double, double>> Garage::openings(const Eigen::Vector2d& a,
+                                                        const Eigen::Vector2d& b) const {
+  constexpr double kOnWall = 0.01;  // m
+  const double length = (b - a).norm();
+  const Eigen::Vector2d along = (b - a) / length;
+  const Eigen::Vector2d across(-along.y(), along.x());
+  std::vector<std::pair<double, double>> openings;
+  for (const Entrance& entrance : entrances) {
+    const double s = (entrance.center - a).dot(along);
+    const double off = std::abs((entrance.center - a).dot(across));
+    if (off > kOnWall || s < 0.0 || s > length) continue;
+    openings.emplace_back(s - 0.5 * entrance.width, s + 0.5 * entrance.width);
+  }
+  std::sort(openings.begin(), openings.end());
+  return openings;
+}
+
 }  // namespace parkade::sim

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "parkade/geometry/se3.hpp"
@@ -128,6 +129,9 @@ struct Garage {
   [[nodiscard]] double area() const;                                   ///< of the outline, m^2
   [[nodiscard]] double floorHeight(const Eigen::Vector2d& p) const;    ///< smooth part
   [[nodiscard]] double surfaceHeight(const Eigen::Vector2d& p) const;  ///< with bumps
+  /// The stretches of an outer wall from a to b that entrances open, m after a, in their order.
+  [[nodiscard]] std::vector<std::pair<double, double>> openings(const Eigen::Vector2d& a,
+                                                                const Eigen::Vector2d& b) const;
 };
 
 }  // namespace parkade::sim

@@ -226,15 +226,10 @@ void addOuterWalls(const Garage& garage, const ShellMaterials& m, Random random,
     const double length = (b - a).norm();
     const Eigen::Vector2d along = (b - a) / length;
     double from = 0.0;
-    for (const Entrance& entrance : garage.entrances) {
-      const double s = (entrance.center - a).dot(along);
-      const double off =
-          std::abs((entrance.center - a).dot(Eigen::Vector2d(-along.y(), along.x())));
-      if (off > 0.01 || s < 0.0 || s > length) continue;
-      const double half = 0.5 * entrance.width;
-      walls.wall(a + from * along, a + (s - half) * along);
-      walls.wall(a + (s - half) * along, a + (s + half) * along, kOpeningHeight);
-      from = s + half;
+    for (const auto& [begin, end] : garage.openings(a, b)) {
+      walls.wall(a + from * along, a + begin * along);
+      walls.wall(a + begin * along, a + end * along, kOpeningHeight);
+      from = end;
     }
     walls.wall(a + from * along, b);
     const auto is_shut = [&](double s) {
