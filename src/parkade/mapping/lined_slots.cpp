@@ -73,8 +73,9 @@ class LinedSlotFinder {
     std::stable_sort(plain.begin(), plain.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });
     for (const auto& [paint, s] : plain) {
+      if (is_taken(s)) continue;
       const double middle = settleSide(grid_, row_, pattern_, s);
-      if (!is_taken(s) && !is_taken(middle)) sides.push_back({middle, false});
+      if (!is_taken(middle)) sides.push_back({middle, false});
     }
     if (sides.size() == known) return {};
     std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.s < b.s; });
@@ -129,10 +130,13 @@ class LinedSlotFinder {
     if (entrance <= 0.0 && inside <= 0.0 && vehicle <= 0.0) return std::nullopt;
     Filling filling;
     double known = 0.0;
-    (left.is_known ? known : filling.log_odds) += likelihood_.side(e.left);
-    (right.is_known ? known : filling.log_odds) += likelihood_.side(e.right);
-    filling.log_odds += kPrior + (is_usual ? 0.0 : kSeldom) + kPlain * (left.is_known ? 0 : 1) +
-                        kPlain * (right.is_known ? 0 : 1) + entrance + inside + vehicle;
+    const auto add = [&](const Side& side, const SlotEvidence::Line& line) {
+      (side.is_known ? known : filling.log_odds) += likelihood_.side(line);
+      if (!side.is_known) filling.log_odds += kPlain;
+    };
+    add(left, e.left);
+    add(right, e.right);
+    filling.log_odds += kPrior + (is_usual ? 0.0 : kSeldom) + entrance + inside + vehicle;
     if (filling.log_odds < options_.min_log_odds) return std::nullopt;
     filling.merit = filling.log_odds + known;
     filling.slots.push_back(place.slot);
