@@ -30,9 +30,6 @@ struct MapArguments {
   double metres_per_px = 0.05;
 };
 
-constexpr double kFree = 0.65;  // as map_export.hpp draws slots
-constexpr double kOccupied = 0.35;
-
 nlohmann::json layerJson(const ParkingMap& map, GridLayer layer) {
   std::int64_t known = 0;
   std::int64_t present = 0;
@@ -78,8 +75,8 @@ nlohmann::json describe(const std::string& path, const ParkingMap& map) {
   int occupied = 0;
   int numbered = 0;
   for (const MapSlot& slot : map.slots) {
-    free += slot.probability_free > kFree ? 1 : 0;
-    occupied += slot.probability_free < kOccupied ? 1 : 0;
+    free += slot.isFree() ? 1 : 0;
+    occupied += slot.isOccupied() ? 1 : 0;
     numbered += slot.number.empty() ? 0 : 1;
   }
   result["slots"] = {

@@ -42,9 +42,9 @@ TextTable summaryTable(const Json& metrics, const Json& timing) {
   return table;
 }
 
-const char* availabilityText(double probability_free) {
-  if (probability_free > 0.65) return "free";
-  return probability_free < 0.35 ? "occupied" : "open";
+const char* availabilityText(const MapSlot& slot) {
+  if (slot.isFree()) return "free";
+  return slot.isOccupied() ? "occupied" : "open";
 }
 
 TextTable slotTable(const ParkingMap& map) {
@@ -53,8 +53,7 @@ TextTable slotTable(const ParkingMap& map) {
   table.header = {"id", "number", "zone", "availability", "P(free)", "seen", "x m", "y m"};
   for (const MapSlot& slot : map.slots) {
     const Eigen::Vector2d entrance = slot.entrance();
-    table.rows.push_back({std::to_string(slot.id), slot.number, slot.zone,
-                          availabilityText(slot.probability_free),
+    table.rows.push_back({std::to_string(slot.id), slot.number, slot.zone, availabilityText(slot),
                           figureText(slot.probability_free, 2), std::to_string(slot.observations),
                           figureText(entrance.x(), 2), figureText(entrance.y(), 2)});
   }

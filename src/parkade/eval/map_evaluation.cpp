@@ -125,12 +125,10 @@ bool isZone(const std::string& text, const TruthSlot& slot, const MapTruth& trut
 
 void scoreContent(const MapSlot& told, const TruthSlot& real, const MapTruth& truth,
                   SlotScore& score) {
-  constexpr double kFree = 0.65;  // as maps are drawn and exported
-  constexpr double kOccupied = 0.35;
   const bool occupied = occupiedAt(real, told.last_seen_ns, truth);
-  if (told.probability_free > kOccupied && told.probability_free < kFree) {
+  if (!told.isFree() && !told.isOccupied()) {
     ++score.availability_open;
-  } else if (occupied == (told.probability_free < kFree)) {
+  } else if (occupied == told.isOccupied()) {
     ++score.availability_right;
   }
   if (!real.number.empty()) {

@@ -61,9 +61,9 @@ cv::Vec3b pixelOf(const Bgr& bgr) {
   return {bgr[0], bgr[1], bgr[2]};
 }
 
-Bgr slotColour(double probability_free) {
-  if (probability_free > 0.65) return kFree;
-  return probability_free < 0.35 ? kOccupied : kOpen;
+Bgr slotColour(const MapSlot& slot) {
+  if (slot.isFree()) return kFree;
+  return slot.isOccupied() ? kOccupied : kOpen;
 }
 
 struct Picture {
@@ -90,7 +90,7 @@ bool inside(const MapSlot& slot, const Eigen::Vector2d& p) {
 }
 
 void drawSlot(Picture& picture, const MapSlot& slot) {
-  const cv::Vec3b fill = pixelOf(slotColour(slot.probability_free));
+  const cv::Vec3b fill = pixelOf(slotColour(slot));
   Eigen::Vector2d low = slot.corners[0];
   Eigen::Vector2d high = slot.corners[0];
   for (const Eigen::Vector2d& corner : slot.corners) {

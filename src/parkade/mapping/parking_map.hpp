@@ -32,6 +32,9 @@ struct MapSlot {
   TimeNs last_seen_ns = 0;
   /// Middle of the entrance.
   [[nodiscard]] Eigen::Vector2d entrance() const { return 0.5 * (corners[0] + corners[1]); }
+  /// Told to be free or occupied; between the two it is open.
+  [[nodiscard]] bool isFree() const { return probability_free > 0.65; }
+  [[nodiscard]] bool isOccupied() const { return probability_free < 0.35; }
   bool operator==(const MapSlot&) const = default;
 };
 

@@ -45,14 +45,12 @@ void fill(const Corners& corners, SemanticClass semantic_class, float log_odds, 
 
 void layDownAvailability(const std::vector<MapSlot>& slots, LayeredGrid& grid) {
   constexpr double kInset = 0.3;  // m
-  constexpr double kDecided = 0.65;
   for (const MapSlot& slot : slots) {
-    const double occupied = 1.0 - slot.probability_free;
-    const double sure = std::max(occupied, slot.probability_free);
-    if (sure < kDecided) continue;
+    if (!slot.isFree() && !slot.isOccupied()) continue;
+    const double sure = std::max(slot.probability_free, 1.0 - slot.probability_free);
     const auto log_odds = static_cast<float>(std::log(sure / std::max(1e-3, 1.0 - sure)));
     fill(insetOf(slot.corners, kInset),
-         occupied > 0.5 ? SemanticClass::kVehicle : SemanticClass::kFloor, log_odds, grid);
+         slot.isOccupied() ? SemanticClass::kVehicle : SemanticClass::kFloor, log_odds, grid);
   }
 }
 
