@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "parkade/geometry/planar.hpp"
+#include "parkade/mapping/way_eyes.hpp"
 
 namespace parkade {
 namespace {
@@ -55,6 +56,43 @@ const SE2& nearestOf(const std::vector<SE2>& way, const Vector2d& p) {
   });
 }
 
+// Whether a wall or a pillar of the map stands between an eye and a face's place, but for what is
+// labelled as one right before it.
+bool isHidden(const LayeredGrid& grid, const Vector2d& eye, const Vector2d& p) {
+  constexpr double kBefore = 0.5;  // m
+  constexpr int kOpaque = 2;       // cells
+  const double distance = (p - eye).norm();
+  const Vector2d step = grid.resolution() / distance * (p - eye);
+  const int count = static_cast<int>((distance - kBefore) / grid.resolution());
+  int inside = 0;
+  for (int n = 0; n < count; ++n) {
+    const SemanticClass c =
+        grid.at(GridLayer::kZoneMarkers, grid.cellOf(eye + n * step)).believed();
+    inside = c == SemanticClass::kWall || c == SemanticClass::kPillar ? inside + 1 : 0;
+    if (inside >= kOpaque) return true;
+  }
+  return false;
+}
+
+// The side of a face that the car's way does not see, or sees less of, by apparent size.
+Vector2d behind(const WallFace& face, const std::vector<Vector2d>& eyes, double range,
+                const LayeredGrid& grid) {
+  constexpr double kSpacing = 0.5;  // m
+  const Vector2d along = (face.to - face.from).normalized();
+  const Vector2d left(-along.y(), along.x());
+  const double length = (face.to - face.from).norm();
+  double from_left = 0.0;
+  for (double s = 0.5 * kSpacing; s < length; s += kSpacing) {
+    const Vector2d p = face.from + s * along;
+    for (const Vector2d& eye : eyes) {
+      const double distance = (eye - p).norm();
+      if (distance > range || distance < 1e-3 || isHidden(grid, eye, p)) continue;
+      from_left += left.dot(eye - p) / (distance * distance);
+    }
+  }
+  return from_left > 0.0 ? Vector2d(-left) : left;
+}
+
 // Wall from the face's places on, and none before them, where labels are smeared.
 void drawFace(const std::vector<Vector2d>& places, const Vector2d& away, double step,
               LayeredGrid& grid) {
@@ -98,18 +136,16 @@ std::vector<Vector3d> WallPoints::places(const std::function<SE2(std::int64_t)>&
 }
 
 void drawWalls(const std::vector<WallFace>& faces, const std::vector<MapSlot>& slots,
-               const std::vector<SE2>& way, LayeredGrid& grid) {
+               const std::vector<SE2>& way, double range, LayeredGrid& grid) {
   constexpr double kRefused = 0.3;  // of a face, at most, that something else explains
   constexpr double kHalfCar = 0.9;  // m
   if (way.empty()) return;
   const double step = 0.5 * grid.resolution();
+  std::vector<Vector2d> eyes;
+  forEachEye(way, [&](const Vector2d& eye) { eyes.push_back(eye); });
   for (const WallFace& face : faces) {
     const double length = (face.to - face.from).norm();
     const Vector2d along = (face.to - face.from) / length;
-    Vector2d away(-along.y(), along.x());
-    if (away.dot(nearestOf(way, 0.5 * (face.from + face.to)).translation() - face.from) > 0.0) {
-      away = -away;
-    }
     std::vector<Vector2d> wall;
     int refused = 0;
     const int count = static_cast<int>(length / step) + 1;
@@ -123,7 +159,7 @@ void drawWalls(const std::vector<WallFace>& faces, const std::vector<MapSlot>& s
         wall.push_back(p);
       }
     }
-    if (refused <= kRefused * count) drawFace(wall, away, step, grid);
+    if (refused <= kRefused * count) drawFace(wall, behind(face, eyes, range, grid), step, grid);
   }
 }
 

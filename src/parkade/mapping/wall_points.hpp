@@ -54,9 +54,10 @@ struct WallFace {
 std::vector<WallFace> findWallFaces(const std::vector<Eigen::Vector3d>& places,
                                     const std::vector<MapObject>& objects);
 
-/// Draws faces into the structure layer as walls 0.2 m deep, on the side away from the car's way,
+/// Draws faces into the structure layer as walls 0.2 m deep, on the side that less of them is seen
+/// from, from everywhere on the car's way within `range` m and past the map's walls and pillars;
 /// but for those that run through told slots, parked vehicles or the way itself.
 void drawWalls(const std::vector<WallFace>& faces, const std::vector<MapSlot>& slots,
-               const std::vector<SE2>& way, LayeredGrid& grid);
+               const std::vector<SE2>& way, double range, LayeredGrid& grid);
 
 }  // namespace parkade

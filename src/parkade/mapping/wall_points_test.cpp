@@ -155,7 +155,7 @@ TEST(WallPoints, AreDrawnBehindTheFaceAndNotThroughSlotsCarsOrTheWay) {
   const std::vector<WallFace> faces = {{{0.0, 5.01}, {10.0, 5.01}}};
   const std::vector<SE2> way = {SE2(0.0, {0.0, 0.0}), SE2(0.0, {10.0, 0.0})};
   LayeredGrid grid;
-  drawWalls(faces, {}, way, grid);
+  drawWalls(faces, {}, way, 8.0, grid);
   EXPECT_NEAR(wallCells(grid), 800, 30);  // 10 m by 0.2 m
   EXPECT_EQ(grid.at(GridLayer::kZoneMarkers, grid.cellOf({5.0, 5.1})).believed(),
             SemanticClass::kWall);
@@ -164,29 +164,46 @@ TEST(WallPoints, AreDrawnBehindTheFaceAndNotThroughSlotsCarsOrTheWay) {
   MapSlot slot;
   slot.corners = {Vector2d(2.0, 3.0), Vector2d(8.0, 3.0), Vector2d(8.0, 8.0), Vector2d(2.0, 8.0)};
   LayeredGrid behind_slot;
-  drawWalls(faces, {slot}, way, behind_slot);
+  drawWalls(faces, {slot}, way, 8.0, behind_slot);
   EXPECT_EQ(wallCells(behind_slot), 0);
   // A slot that ends at the wall is no reason against it.
   slot.corners = {Vector2d(2.0, 0.0), Vector2d(8.0, 0.0), Vector2d(8.0, 5.1), Vector2d(2.0, 5.1)};
-  drawWalls(faces, {slot}, way, behind_slot);
+  drawWalls(faces, {slot}, way, 8.0, behind_slot);
   EXPECT_GT(wallCells(behind_slot), 700);
 
   // But nobody enters a slot through a wall.
   slot.corners = {Vector2d(2.0, 5.1), Vector2d(8.0, 5.1), Vector2d(8.0, 0.1), Vector2d(2.0, 0.1)};
   LayeredGrid before_slot;
-  drawWalls(faces, {slot}, way, before_slot);
+  drawWalls(faces, {slot}, way, 8.0, before_slot);
   EXPECT_EQ(wallCells(before_slot), 0);
 
   LayeredGrid cars;
   for (double x = 0.0; x < 6.0; x += 0.05) {
     cars.add(GridLayer::kAvailability, {x, 5.0}, SemanticClass::kVehicle, 2.0F);
   }
-  drawWalls(faces, {}, way, cars);
+  drawWalls(faces, {}, way, 8.0, cars);
   EXPECT_EQ(wallCells(cars), 0);
 
   LayeredGrid crossed;
-  drawWalls(faces, {}, {SE2(0.0, {5.0, 2.0}), SE2(0.0, {5.0, 5.0}), SE2(0.0, {5.0, 9.0})}, crossed);
+  drawWalls(faces, {}, {SE2(0.0, {5.0, 2.0}), SE2(0.0, {5.0, 5.0}), SE2(0.0, {5.0, 9.0})}, 8.0,
+            crossed);
   EXPECT_FALSE(crossed.at(GridLayer::kZoneMarkers, crossed.cellOf({5.0, 5.1})).known());
+}
+
+TEST(WallPoints, AreDrawnInsideARoomWhoseSideIsSeenPastItsCorner) {
+  // The way leads along the room's front, which is labelled, and hardly past its corner.
+  LayeredGrid grid;
+  for (double x = 0.0; x < 10.0; x += 0.05) {
+    for (double y = 3.0; y < 3.2; y += 0.05) {
+      grid.add(GridLayer::kZoneMarkers, {x, y}, SemanticClass::kWall, 2.0F);
+    }
+  }
+  std::vector<SE2> way;
+  for (double x = 0.0; x < 12.0; x += 0.5) way.emplace_back(0.0, Eigen::Vector2d(x, 0.0));
+  drawWalls({{{10.02, 3.0}, {10.02, 8.0}}}, {}, way, 8.0, grid);
+  EXPECT_EQ(grid.at(GridLayer::kZoneMarkers, grid.cellOf({9.9, 5.0})).believed(),
+            SemanticClass::kWall);
+  EXPECT_FALSE(grid.at(GridLayer::kZoneMarkers, grid.cellOf({10.12, 5.0})).known());
 }
 
 }  // namespace

@@ -240,9 +240,10 @@ ParkingMap FusedMapper::map(const std::string& name) const {
   forgetStrayPillars(map.objects, map.grid);
   const double range = m.options.global_map.evidence.range_m;
   // Labels are less exact than key points: by themselves, and once these have drawn what they show.
-  drawWalls(findWallFaces(m.wallPlaces(), map.objects), map.slots, way, map.grid);
+  drawWalls(findWallFaces(m.wallPlaces(), map.objects), map.slots, way, range, map.grid);
   forgetUnseenGround(way, range, map.grid);
-  drawWalls(findWallFaces(wallFronts(map.grid, way, range), map.objects), map.slots, way, map.grid);
+  drawWalls(findWallFaces(wallFronts(map.grid, way, range), map.objects), map.slots, way, range,
+            map.grid);
   forgetUnseenGround(way, range, map.grid);
   trimColumnFeet(map.objects, map.grid);
   completeColumnFeet(map.objects, map.grid);
