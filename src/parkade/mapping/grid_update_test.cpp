@@ -43,6 +43,27 @@ TEST(FrameEvidence, SmearSaysNothing) {
   EXPECT_EQ(PackedLabels::classOf(packLabels(frame).pixels[at]), SemanticClass::kPillar);
 }
 
+TEST(FrameEvidence, AWallAtThePicturesBorderSaysNothing) {
+  SemanticFrame frame;
+  const BevGeometry& g = frame.labels.geometry;
+  const auto wall = static_cast<std::uint8_t>(SemanticClass::kWall);
+  frame.labels.labels = cv::Mat(g.height_px, g.width_px, CV_8UC1, cv::Scalar(wall));
+  const auto at = [&](int row, int column) {
+    return packLabels(frame).pixels[static_cast<std::size_t>(row * g.width_px + column)];
+  };
+  const int beyond = static_cast<int>(0.6 / g.metres_per_px) + 1;
+  for (const int k : {0, beyond - 3}) {
+    EXPECT_EQ(at(k, 100), 0);
+    EXPECT_EQ(at(100, k), 0);
+    EXPECT_EQ(at(g.height_px - 1 - k, 100), 0);
+    EXPECT_EQ(at(100, g.width_px - 1 - k), 0);
+  }
+  EXPECT_NE(at(beyond, 100), 0);
+  EXPECT_NE(at(100, g.width_px - 1 - beyond), 0);
+  frame.labels.labels.setTo(static_cast<std::uint8_t>(SemanticClass::kFloor));
+  EXPECT_NE(at(0, 100), 0);
+}
+
 // The cell 2 m before the car's middle after pictures of it that all show one class everywhere.
 struct ManyPictures {
   LocalMap map{LocalMapOptions()};
