@@ -16,7 +16,6 @@ constexpr double kLowest = 0.3;      // m above the floor
 constexpr double kHigh = 1.7;        // m: higher than cars
 constexpr double kHighest = 2.8;     // m
 constexpr double kAcrossBin = 0.08;  // m across a line, when lines are looked for
-constexpr double kOnFace = 0.06;     // m off a face
 constexpr double kBeside = 0.4;      // m: a wall has nothing so near to it, cars have
 constexpr double kGap = 3.0;         // m between points of one piece: doors and passages are wider
 constexpr double kShortest = 4.0;    // m
@@ -101,10 +100,10 @@ struct Line {
   [[nodiscard]] double off(const Turned& p) const { return p.across - offset - slope * p.along; }
 };
 
-// Least squares over the points near a line, three times closer each.
-std::optional<Line> fitLine(const std::vector<Turned>& points, double across) {
+// Least squares over the points near a line, three times closer each; at last on_face m off it.
+std::optional<Line> fitLine(const std::vector<Turned>& points, double across, double on_face) {
   Line line{across, 0.0};
-  for (const double near : {0.12, 0.08, kOnFace}) {
+  for (const double near : {2.0 * on_face, 1.4 * on_face, on_face}) {
     double n = 0.0;
     double s = 0.0;
     double ss = 0.0;
@@ -208,12 +207,12 @@ std::vector<std::pair<double, double>> piecesOf(const Along& places) {
   return pieces;
 }
 
-Along placesBy(const Line& line, const std::vector<Turned>& points) {
+Along placesBy(const Line& line, const std::vector<Turned>& points, double on_face) {
   Along places;
   for (const Turned& p : points) {
     const double off = std::abs(line.off(p));
     if (off < kBeside) places.beside.push_back(p.along);
-    if (off >= kOnFace) continue;
+    if (off >= on_face) continue;
     places.on.push_back(p.along);
     (p.high ? places.high : places.low).push_back(p.along);
   }
@@ -221,7 +220,8 @@ Along placesBy(const Line& line, const std::vector<Turned>& points) {
   return places;
 }
 
-void findAlong(const std::vector<Vector3d>& places, double angle, std::vector<WallFace>& faces) {
+void findAlong(const std::vector<Vector3d>& places, double angle, double on_face,
+               std::vector<WallFace>& faces) {
   constexpr double kSameWall = 0.2;  // m off a face
   std::vector<Turned> points = turn(places, angle);
   std::map<int, int> counts = histogram(points);
@@ -234,9 +234,9 @@ void findAlong(const std::vector<Vector3d>& places, double angle, std::vector<Wa
     if (most == counts.end() || most->second < kFewest) return;
     const int bin = most->first;
     most->second = 0;
-    const std::optional<Line> line = fitLine(points, (bin + 0.5) * kAcrossBin);
+    const std::optional<Line> line = fitLine(points, (bin + 0.5) * kAcrossBin, on_face);
     if (!line) continue;
-    for (const auto& [begin, end] : piecesOf(placesBy(*line, points))) {
+    for (const auto& [begin, end] : piecesOf(placesBy(*line, points, on_face))) {
       const auto at = [&](double s) -> Vector2d {
         return s * along + (line->offset + line->slope * s) * across;
       };
@@ -253,12 +253,12 @@ void findAlong(const std::vector<Vector3d>& places, double angle, std::vector<Wa
 }  // namespace
 
 std::vector<WallFace> findWallFaces(const std::vector<Vector3d>& places,
-                                    const std::vector<MapObject>& objects) {
+                                    const std::vector<MapObject>& objects, double on_face) {
   const std::vector<Vector3d> others = withoutPillars(places, objects);
   std::vector<WallFace> faces;
   const double angle = mainDirection(others);
-  findAlong(others, angle, faces);
-  findAlong(others, angle + 0.5 * M_PI, faces);
+  findAlong(others, angle, on_face, faces);
+  findAlong(others, angle + 0.5 * M_PI, on_face, faces);
   return faces;
 }
 

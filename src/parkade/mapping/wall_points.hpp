@@ -46,18 +46,27 @@ struct WallFace {
   Eigen::Vector2d to;
 };
 
+/// Places nearer than this to a face lie on it, m: of key points, and of labels.
+inline constexpr double kPointsOnFace = 0.06;
+inline constexpr double kLabelsOnFace = 0.1;
+
 /// Faces of walls that places (WallPoints::places(), wallFronts()) lie on: along the two square
 /// directions that most points line up with, straight pieces of at least 4 m with a point every 3 m
 /// and at least 10, that hold most of what lies within 0.4 m of them, and show it higher than cars
 /// are as well as lower than pipes run. Points at pillars, of which objects tells, are theirs.
-/// docs/math/grid.md.
+/// on_face: m, above. docs/math/grid.md.
 std::vector<WallFace> findWallFaces(const std::vector<Eigen::Vector3d>& places,
-                                    const std::vector<MapObject>& objects);
+                                    const std::vector<MapObject>& objects, double on_face);
 
 /// Draws faces into the structure layer as walls 0.2 m deep, on the side that less of them is seen
 /// from, from everywhere on the car's way within `range` m and past the map's walls and pillars;
 /// but for those that run through told slots, parked vehicles or the way itself.
 void drawWalls(const std::vector<WallFace>& faces, const std::vector<MapSlot>& slots,
                const std::vector<SE2>& way, double range, LayeredGrid& grid);
+
+/// Takes floor back that lies behind where a drawn face goes on, up to 8 m from its ends: a strip
+/// of at most 1 m, with nothing known behind it. Far walls are taken for floor there; where floor
+/// lies deeper, or a wall begins, the face has ended.
+void forgetFloorBeyondWalls(const std::vector<WallFace>& faces, LayeredGrid& grid);
 
 }  // namespace parkade

@@ -41,7 +41,7 @@ struct Scene {
   }
   // Whether a found face lies along the garage's line y = at between two places.
   [[nodiscard]] bool hasFace(double y, double from, double to) const {
-    const std::vector<WallFace> faces = findWallFaces(places, {});
+    const std::vector<WallFace> faces = findWallFaces(places, {}, kPointsOnFace);
     return std::any_of(faces.begin(), faces.end(), [&](const WallFace& face) {
       Vector2d a = T_map_garage.inverse() * face.from;
       Vector2d b = T_map_garage.inverse() * face.to;
@@ -59,7 +59,7 @@ TEST(WallPoints, LieOnStraightFaces) {
   scene.wall({0.0, 0.0}, {0.0, 10.0}, 40);
   EXPECT_TRUE(scene.hasFace(10.0, 0.0, 20.0));
   EXPECT_TRUE(scene.hasFace(10.0, 25.0, 35.0));
-  EXPECT_EQ(findWallFaces(scene.places, {}).size(), 3U);
+  EXPECT_EQ(findWallFaces(scene.places, {}, kPointsOnFace).size(), 3U);
 }
 
 TEST(WallPoints, PillarsInARowAreNoWall) {
@@ -69,15 +69,15 @@ TEST(WallPoints, PillarsInARowAreNoWall) {
     scene.wall({8.0 * k, 10.0}, {8.0 * k + 0.6, 10.0}, 20);
   }
   EXPECT_TRUE(scene.hasFace(0.0, 0.0, 30.0));
-  EXPECT_EQ(findWallFaces(scene.places, {}).size(), 1U);
+  EXPECT_EQ(findWallFaces(scene.places, {}, kPointsOnFace).size(), 1U);
 }
 
 TEST(WallPoints, WhatFillsARoomIsNoWall) {
   Scene scene;
   scene.wall({0.0, 0.0}, {30.0, 0.0}, 200);
   scene.box({0.0, 5.0}, {20.0, 7.0}, 800);
-  EXPECT_EQ(findWallFaces(scene.places, {}).size(), 1U);
-  EXPECT_TRUE(findWallFaces({}, {}).empty());
+  EXPECT_EQ(findWallFaces(scene.places, {}, kPointsOnFace).size(), 1U);
+  EXPECT_TRUE(findWallFaces({}, {}, kPointsOnFace).empty());
 }
 
 TEST(WallPoints, StayWithTheirAnchorsAndCountOnce) {
@@ -97,7 +97,7 @@ TEST(WallPoints, LowerThanCarsOrHigherThanThemAreNoWall) {
   scene.wall({0.0, 10.0}, {6.0, 10.0}, 60, 0.3, 1.5);   // bumpers
   scene.wall({0.0, 20.0}, {30.0, 20.0}, 90, 2.2, 2.7);  // a pipe
   EXPECT_TRUE(scene.hasFace(0.0, 0.0, 30.0));
-  EXPECT_EQ(findWallFaces(scene.places, {}).size(), 1U);
+  EXPECT_EQ(findWallFaces(scene.places, {}, kPointsOnFace).size(), 1U);
 }
 
 TEST(WallPoints, OfCarsBesideAWallDoNotCarryItOn) {
@@ -107,7 +107,7 @@ TEST(WallPoints, OfCarsBesideAWallDoNotCarryItOn) {
     scene.box({13.0 + 2.5 * k, 9.7}, {14.8 + 2.5 * k, 10.6}, 30);
   }
   EXPECT_TRUE(scene.hasFace(10.0, 0.0, 12.0));
-  EXPECT_EQ(findWallFaces(scene.places, {}).size(), 1U);
+  EXPECT_EQ(findWallFaces(scene.places, {}, kPointsOnFace).size(), 1U);
 }
 
 TEST(WallPoints, OfAPillarBesideACarAreNoWall) {
@@ -123,7 +123,7 @@ TEST(WallPoints, OfAPillarBesideACarAreNoWall) {
     pillar.position.head<2>() = scene.T_map_garage * Vector2d(x, 10.3);
     pillars.push_back(pillar);
   }
-  EXPECT_EQ(findWallFaces(scene.places, pillars).size(), 1U);
+  EXPECT_EQ(findWallFaces(scene.places, pillars, kPointsOnFace).size(), 1U);
 }
 
 int wallCells(const LayeredGrid& grid) {
@@ -144,7 +144,7 @@ TEST(WallPoints, LabelledPiecesOfAWallTellTheWholeOfIt) {
                2.0F);
     }
   }
-  const std::vector<WallFace> faces = findWallFaces(wallFronts(grid, way, 8.0), {});
+  const std::vector<WallFace> faces = findWallFaces(wallFronts(grid, way, 8.0), {}, kLabelsOnFace);
   ASSERT_EQ(faces.size(), 1U);
   EXPECT_NEAR((faces[0].to - faces[0].from).norm(), 10.0, 0.6);
   EXPECT_NEAR(faces[0].from.y(), 4.05, 0.06);
@@ -204,6 +204,29 @@ TEST(WallPoints, AreDrawnInsideARoomWhoseSideIsSeenPastItsCorner) {
   EXPECT_EQ(grid.at(GridLayer::kZoneMarkers, grid.cellOf({9.9, 5.0})).believed(),
             SemanticClass::kWall);
   EXPECT_FALSE(grid.at(GridLayer::kZoneMarkers, grid.cellOf({10.12, 5.0})).known());
+}
+
+TEST(WallPoints, WhereAWallGoesOnAThinStripOfFloorBehindItIsNone) {
+  const WallFace face{{0.0, 4.0}, {5.0, 4.0}};
+  const std::vector<SE2> way = {SE2(0.0, {0.0, 0.0}), SE2(0.0, {5.0, 0.0}), SE2(0.0, {10.0, 0.0})};
+  // Floor up to the wall and, where it goes on (to 8 m), up to 0.6 m behind it; then a door.
+  LayeredGrid grid;
+  for (double x = 0.025; x < 12.0; x += 0.05) {
+    const double end = x < 5.0 ? 4.0 : x < 8.0 ? 4.6 : 6.0;
+    for (double y = 0.025; y < end; y += 0.05) {
+      grid.add(GridLayer::kZoneMarkers, {x, y}, SemanticClass::kFloor, 2.0F);
+    }
+  }
+  drawWalls({face}, {}, way, 8.0, grid);
+  forgetFloorBeyondWalls({face}, grid);
+  const auto known = [&](double x, double y) {
+    return grid.at(GridLayer::kZoneMarkers, grid.cellOf({x, y})).known();
+  };
+  EXPECT_FALSE(known(6.02, 4.12));
+  EXPECT_FALSE(known(6.02, 4.52));
+  EXPECT_TRUE(known(6.02, 3.92));
+  EXPECT_TRUE(known(8.52, 4.52));
+  EXPECT_TRUE(known(11.02, 4.12));
 }
 
 }  // namespace

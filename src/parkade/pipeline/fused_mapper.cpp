@@ -240,11 +240,16 @@ ParkingMap FusedMapper::map(const std::string& name) const {
   forgetStrayPillars(map.objects, map.grid);
   const double range = m.options.global_map.evidence.range_m;
   // Labels are less exact than key points: by themselves, and once these have drawn what they show.
-  drawWalls(findWallFaces(m.wallPlaces(), map.objects), map.slots, way, range, map.grid);
+  const auto places = m.wallPlaces();
+  const std::vector<WallFace> faces = findWallFaces(places, map.objects, kPointsOnFace);
+  drawWalls(faces, map.slots, way, range, map.grid);
   forgetUnseenGround(way, range, map.grid);
-  drawWalls(findWallFaces(wallFronts(map.grid, way, range), map.objects), map.slots, way, range,
-            map.grid);
+  const auto fronts = wallFronts(map.grid, way, range);
+  const std::vector<WallFace> labelled = findWallFaces(fronts, map.objects, kLabelsOnFace);
+  drawWalls(labelled, map.slots, way, range, map.grid);
   forgetUnseenGround(way, range, map.grid);
+  forgetFloorBeyondWalls(faces, map.grid);
+  forgetFloorBeyondWalls(labelled, map.grid);
   trimColumnFeet(map.objects, map.grid);
   completeColumnFeet(map.objects, map.grid);
   retreatFromUnseen(map.grid);
