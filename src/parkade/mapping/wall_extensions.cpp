@@ -37,7 +37,7 @@ Vector2d wallSide(const WallFace& face, const LayeredGrid& grid) {
 // than walls are mistaken.
 std::optional<std::vector<Vector2i>> floorBehind(const Vector2d& p, const Vector2d& away,
                                                  const LayeredGrid& grid) {
-  constexpr double kDeepest = 1.0;  // m
+  constexpr double kDeepest = 1.3;  // m
   constexpr double kUnknown = 0.1;  // m that end it
   const double step = 0.5 * grid.resolution();
   std::vector<Vector2i> floor;
@@ -62,12 +62,16 @@ void forgetFloorBeyondWalls(const std::vector<WallFace>& faces, LayeredGrid& gri
   for (const WallFace& face : faces) {
     const Vector2d away = wallSide(face, grid);
     const Vector2d along = (face.to - face.from).normalized();
+    const double length = (face.to - face.from).norm();
     for (const bool ahead : {false, true}) {
       const Vector2d end = ahead ? face.to : face.from;
-      for (double s = 0.0; s < kReach; s += step) {
+      for (double s = -0.5 * length; s < kReach; s += step) {
         const auto floor = floorBehind(end + (ahead ? s : -s) * along, away, grid);
-        if (!floor) break;
-        lost.insert(lost.end(), floor->begin(), floor->end());
+        if (floor) {
+          lost.insert(lost.end(), floor->begin(), floor->end());
+        } else if (s > 0.0) {
+          break;
+        }
       }
     }
   }

@@ -64,9 +64,9 @@ std::vector<WallFace> findWallFaces(const std::vector<Eigen::Vector3d>& places,
 void drawWalls(const std::vector<WallFace>& faces, const std::vector<MapSlot>& slots,
                const std::vector<SE2>& way, double range, LayeredGrid& grid);
 
-/// Takes floor back that lies behind where a drawn face goes on, up to 8 m from its ends: a strip
-/// of at most 1 m, with nothing known behind it. Far walls are taken for floor there; where floor
-/// lies deeper, or a wall begins, the face has ended.
+/// Takes floor back that lies behind a face, and where it goes on, up to 8 m from its ends: a strip
+/// of at most 1.3 m, with nothing known behind it. Far walls are taken for floor; where floor lies
+/// deeper, the wall has an opening or an end.
 void forgetFloorBeyondWalls(const std::vector<WallFace>& faces, LayeredGrid& grid);
 
 }  // namespace parkade
