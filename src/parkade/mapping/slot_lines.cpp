@@ -3,163 +3,19 @@
 #include "parkade/mapping/slot_lines.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <map>
 #include <utility>
 
 #include "parkade/core/median.hpp"
+#include "parkade/mapping/slot_edges.hpp"
 
 namespace parkade {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector2i;
-
-constexpr double kBin = 0.25;       // m of an edge that are judged together
-constexpr double kAcross = 0.2;     // m to either side of an edge, within which its line lies
-constexpr double kNearWidth = 0.1;  // m to either side of the line itself
-constexpr double kCorner = 0.2;     // m from an edge's end, where other lines cross it
-constexpr double kBar = 0.5;        // m from a corner, where a T or an L has its bar
-
-enum class SlotEdgeKind : std::uint8_t { kSide, kFront, kRear };
-
-// What of a bin is in sight, and whether it is line there.
-struct Bin {
-  bool seen = false;
-  bool shows = false;
-};
-
-struct SlotEdge {
-  Vector2d from;  // sides: at the entrance
-  Vector2d to;
-  SlotEdgeKind kind;
-  SlotShape shape;
-  std::vector<Bin> bins;
-
-  [[nodiscard]] double length() const { return (to - from).norm(); }
-  [[nodiscard]] double margin() const { return kind == SlotEdgeKind::kSide ? kCorner : kBar; }
-  [[nodiscard]] Vector2d along() const { return (to - from).normalized(); }
-  [[nodiscard]] Vector2d across() const { return {-along().y(), along().x()}; }
-  // Lines across begin at both of its corners alike.
-  [[nodiscard]] double distance(double s) const {
-    return kind == SlotEdgeKind::kSide ? s : std::min(s, length() - s);
-  }
-  [[nodiscard]] std::size_t binOf(double s) const {
-    return static_cast<std::size_t>(std::max(0.0, distance(s)) / kBin);
-  }
-};
-
-bool isLine(const LayeredGrid& grid, const Vector2d& p) {
-  return grid.at(GridLayer::kParkingLines, grid.cellOf(p)).believed() == SemanticClass::kSlotLine;
-}
-
-bool isKnown(const LayeredGrid& grid, const Vector2d& p) {
-  return grid.at(GridLayer::kParkingLines, grid.cellOf(p)).known();
-}
-
-// Neighbours share a side, and rows back to back their rears.
-bool isSame(const SlotEdge& a, const SlotEdge& b) {
-  constexpr double kSame = 0.35;  // m
-  const auto near = [&](const Vector2d& p, const Vector2d& q) { return (p - q).norm() < kSame; };
-  return (near(a.from, b.from) && near(a.to, b.to)) || (near(a.from, b.to) && near(a.to, b.from));
-}
-
-std::vector<SlotEdge> edgesOf(const std::vector<MapSlot>& slots) {
-  std::vector<SlotEdge> edges;
-  const auto add = [&](const Vector2d& from, const Vector2d& to, SlotEdgeKind kind,
-                       SlotShape shape) {
-    SlotEdge edge{from, to, kind, shape, {}};
-    if (edge.length() < 1.0) return;
-    if (std::any_of(edges.begin(), edges.end(),
-                    [&](const SlotEdge& other) { return isSame(edge, other); })) {
-      return;
-    }
-    edges.push_back(std::move(edge));
-  };
-  for (const MapSlot& slot : slots) {
-    const auto& c = slot.corners;
-    add(c[0], c[3], SlotEdgeKind::kSide, slot.shape);
-    add(c[1], c[2], SlotEdgeKind::kSide, slot.shape);
-    add(c[0], c[1], SlotEdgeKind::kFront, slot.shape);
-    add(c[3], c[2], SlotEdgeKind::kRear, slot.shape);
-  }
-  return edges;
-}
-
-// Moves an edge onto the line that the layer holds beside it: a straight line through its cells.
-void alignEdge(const LayeredGrid& grid, SlotEdge& edge) {
-  constexpr std::size_t kFewest = 12;
-  constexpr double kScatter = 0.15;  // m, of a cell, as cells beside each other err together
-  constexpr double kTurn = 0.009;    // rad, that a told slot's edge is wrong by
-  const double step = grid.resolution();
-  std::vector<Vector2d> points;  // along, across
-  for (double s = edge.margin(); s <= edge.length() - edge.margin(); s += step) {
-    for (double t = -kAcross; t <= kAcross; t += step) {
-      if (isLine(grid, edge.from + s * edge.along() + t * edge.across())) points.push_back({s, t});
-    }
-  }
-  if (points.size() < kFewest) return;
-  double offset = 0.0;
-  double turn = 0.0;
-  double middle = 0.0;
-  for (const double reach : {kAcross, 0.5 * kAcross}) {
-    Vector2d mean = Vector2d::Zero();
-    double n = 0.0;
-    const auto fits = [&](const Vector2d& p) {
-      return std::abs(p.y() - offset - turn * (p.x() - middle)) <= reach + 0.5 * step;
-    };
-    for (const Vector2d& p : points) {
-      if (!fits(p)) continue;
-      mean += p;
-      n += 1.0;
-    }
-    if (n < static_cast<double>(kFewest)) return;
-    mean /= n;
-    double xx = 0.0;
-    double xy = 0.0;
-    for (const Vector2d& p : points) {
-      if (!fits(p)) continue;
-      xx += (p.x() - mean.x()) * (p.x() - mean.x());
-      xy += (p.x() - mean.x()) * (p.y() - mean.y());
-    }
-    middle = mean.x();
-    offset = mean.y();
-    turn = xy / (xx + kScatter * kScatter / (kTurn * kTurn));
-  }
-  const Vector2d across = edge.across();
-  const double length = edge.length();
-  edge.from += (offset - turn * middle) * across;
-  edge.to += (offset + turn * (length - middle)) * across;
-}
-
-void judgeBins(const LayeredGrid& grid, SlotEdge& edge) {
-  const double step = grid.resolution();
-  const Vector2d along = edge.along();
-  const Vector2d across = edge.across();
-  std::vector<std::array<int, 3>> counts(
-      edge.binOf(edge.kind == SlotEdgeKind::kSide ? edge.length() : 0.5 * edge.length()) + 1);
-  for (double s = edge.margin(); s <= edge.length() - edge.margin(); s += step) {
-    const Vector2d p = edge.from + s * along;
-    auto& [all, known, line] = counts[edge.binOf(s)];
-    ++all;
-    if (!isKnown(grid, p)) continue;
-    ++known;
-    for (double t = -kNearWidth; t <= kNearWidth; t += step) {
-      if (!isLine(grid, p + t * across)) continue;
-      ++line;
-      break;
-    }
-  }
-  edge.bins.resize(counts.size());
-  for (std::size_t k = 0; k < counts.size(); ++k) {
-    const auto& [all, known, line] = counts[k];
-    edge.bins[k].seen = all > 0 && 2 * known >= all;
-    edge.bins[k].shows = edge.bins[k].seen && 2 * line >= known;
-  }
-}
 
 // How edges of one kind are painted: the share that shows a line at each distance, of those that
 // are painted at all.
@@ -170,19 +26,14 @@ struct Pattern {
 
 Pattern learnPattern(const std::vector<const SlotEdge*>& edges) {
   constexpr int kFewest = 6;
-  constexpr double kSome = 0.25;
   Pattern pattern;
   int painted = 0;
   int told = 0;
   std::vector<std::pair<int, int>> counts;  // seen, shows
   for (const SlotEdge* edge : edges) {
-    const auto seen = std::count_if(edge->bins.begin(), edge->bins.end(),
-                                    [](const Bin& bin) { return bin.seen; });
-    const auto shows = std::count_if(edge->bins.begin(), edge->bins.end(),
-                                     [](const Bin& bin) { return bin.shows; });
-    if (seen < 2) continue;
+    if (!edge->isSeen()) continue;
     ++told;
-    if (static_cast<double>(shows) < kSome * static_cast<double>(seen)) continue;
+    if (!edge->isPainted()) continue;
     ++painted;
     counts.resize(std::max(counts.size(), edge->bins.size()));
     for (std::size_t k = 0; k < edge->bins.size(); ++k) {
@@ -222,16 +73,33 @@ double lineWidth(const std::vector<SlotEdge>& edges, const LayeredGrid& grid) {
   std::vector<double> widths;
   for (const SlotEdge& edge : edges) {
     if (edge.kind != SlotEdgeKind::kSide) continue;
-    for (double s = kCorner; s <= edge.length() - kCorner; s += step) {
+    for (double s = SlotEdge::kCorner; s <= edge.length() - SlotEdge::kCorner; s += step) {
       if (!edge.bins[edge.binOf(s)].shows) continue;
       int cells = 0;
-      for (double t = -kAcross; t <= kAcross + 1e-9; t += 0.25 * step) {
-        cells += isLine(grid, edge.from + s * edge.along() + t * edge.across()) ? 1 : 0;
+      for (double t = -SlotEdge::kAcross; t <= SlotEdge::kAcross + 1e-9; t += 0.25 * step) {
+        cells += showsSlotLine(grid, edge.from + s * edge.along() + t * edge.across()) ? 1 : 0;
       }
       if (cells > 0) widths.push_back(0.25 * step * cells);
     }
   }
   return widths.empty() ? 0.0 : median(std::move(widths));
+}
+
+// Slots of a row are painted alike: whether so many of its entrances, or rears, show their line
+// that all have one.
+bool isPaintedRow(const std::vector<const SlotEdge*>& row) {
+  constexpr int kFewest = 2;
+  constexpr double kFronts = 0.65;
+  constexpr double kRears = 0.2;  // farther away, and seldom seen whole
+  int seen = 0;
+  int show = 0;
+  for (const SlotEdge* edge : row) {
+    if (!edge->isSeen()) continue;
+    ++seen;
+    show += edge->isPainted() ? 1 : 0;
+  }
+  const double least = row.front()->kind == SlotEdgeKind::kFront ? kFronts : kRears;
+  return show >= kFewest && show >= least * seen;
 }
 
 void paint(const SlotEdge& edge, const Pattern& pattern, double width, LayeredGrid& grid) {
@@ -260,19 +128,23 @@ void paint(const SlotEdge& edge, const Pattern& pattern, double width, LayeredGr
 
 void completeSlotLines(const std::vector<MapSlot>& slots, LayeredGrid& grid) {
   constexpr double kLikely = 1.0;  // log-odds
-  std::vector<SlotEdge> edges = edgesOf(slots);
+  const std::vector<SlotEdge> edges = slotEdges(slots, grid);
   std::map<std::pair<SlotEdgeKind, SlotShape>, std::vector<const SlotEdge*>> kinds;
-  for (SlotEdge& edge : edges) {
-    alignEdge(grid, edge);
-    judgeBins(grid, edge);
-    kinds[{edge.kind, edge.shape}].push_back(&edge);
-  }
+  for (const SlotEdge& edge : edges) kinds[{edge.kind, edge.shape}].push_back(&edge);
   const double width = lineWidth(edges, grid);
   for (const auto& [kind, alike] : kinds) {
     const Pattern pattern = learnPattern(alike);
-    if (pattern.shares.empty()) continue;
     for (const SlotEdge* edge : alike) {
-      if (paintedLogOdds(*edge, pattern) > kLikely) paint(*edge, pattern, width, grid);
+      if (!pattern.shares.empty() && paintedLogOdds(*edge, pattern) > kLikely) {
+        paint(*edge, pattern, width, grid);
+      }
+    }
+    if (kind.first == SlotEdgeKind::kSide) continue;
+    for (const std::vector<const SlotEdge*>& row : rowsOfEdges(alike)) {
+      if (!isPaintedRow(row)) continue;
+      for (const SlotEdge* edge : row) {
+        paint(*edge, {1.0, std::vector<double>(edge->bins.size(), 1.0)}, width, grid);
+      }
     }
   }
 }

@@ -54,14 +54,26 @@ TEST(SlotLines, SidesGoOnAsFarAsThoseOfOtherSlotsDo) {
 }
 
 // All of it worn off, and of one entrance among painted ones.
-TEST(SlotLines, ASlotHasSidesWhateverTheWearAndAnEntranceLineOnlyWhereItShows) {
+TEST(SlotLines, ASlotHasSidesWhateverTheWearAndAnEntranceLineWhereItsRowHasOne) {
   LayeredGrid grid = sidesOf(20, 4.0);
   fill(grid, SemanticClass::kSlotLine, {0.0, -0.05}, {20 * kWidth, 0.05});
   fill(grid, SemanticClass::kFloor, {3 * kWidth - 0.2, 0.1}, {3 * kWidth + 0.2, 4.5});
   fill(grid, SemanticClass::kFloor, {7 * kWidth + 0.1, -0.1}, {8 * kWidth - 0.1, 0.1});
   completeSlotLines(rowOf(20), grid);
   EXPECT_EQ(at(grid, 3 * kWidth, 2.0), SemanticClass::kSlotLine);
-  EXPECT_EQ(at(grid, 7.5 * kWidth, 0.0), SemanticClass::kFloor);
+  EXPECT_EQ(at(grid, 7.5 * kWidth, 0.0), SemanticClass::kSlotLine);
+}
+
+TEST(SlotLines, RearsFarAwayAreLinesWhereAFewOfTheirRowShowOne) {
+  for (const int shown : {1, 3}) {
+    LayeredGrid grid = sidesOf(12, 4.0);
+    fill(grid, SemanticClass::kFloor, {-1.0, 4.5}, {12 * kWidth + 1.0, 5.4});
+    fill(grid, SemanticClass::kSlotLine, {0.0, 4.95}, {shown * kWidth, 5.05});
+    completeSlotLines(rowOf(12), grid);
+    EXPECT_EQ(at(grid, 9.5 * kWidth, 5.0),
+              shown == 3 ? SemanticClass::kSlotLine : SemanticClass::kFloor);
+    EXPECT_EQ(at(grid, 9.5 * kWidth, 0.0), SemanticClass::kFloor);
+  }
 }
 
 TEST(SlotLines, FollowTheLineAndNotTheSlot) {
