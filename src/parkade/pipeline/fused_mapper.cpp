@@ -9,11 +9,7 @@
 
 #include "parkade/core/check.hpp"
 #include "parkade/core/units.hpp"
-#include "parkade/mapping/column_feet.hpp"
-#include "parkade/mapping/slot_availability.hpp"
-#include "parkade/mapping/slot_lines.hpp"
-#include "parkade/mapping/unseen_ground.hpp"
-#include "parkade/mapping/wheel_stops.hpp"
+#include "parkade/mapping/told_layers.hpp"
 #include "parkade/pipeline/fused_mapper_impl.hpp"
 
 namespace parkade {
@@ -237,25 +233,7 @@ ParkingMap FusedMapper::map(const std::string& name) const {
   std::vector<SE2> way;
   for (const StampedPose& pose : finalTrajectory()) way.push_back(SE2::fromSE3(pose.T_world_body));
   map.slots = m.slots.slots(m.last_t_ns, map.objects);
-  forgetStrayPillars(map.objects, map.grid);
-  const double range = m.options.global_map.evidence.range_m;
-  // Labels are less exact than key points: by themselves, and once these have drawn what they show.
-  const auto places = m.wallPlaces();
-  const std::vector<WallFace> faces = findWallFaces(places, map.objects, kPointsOnFace);
-  drawWalls(faces, map.slots, way, range, map.grid);
-  forgetUnseenGround(way, range, map.grid);
-  const auto fronts = wallFronts(map.grid, way, range);
-  const std::vector<WallFace> labelled = findWallFaces(fronts, map.objects, kLabelsOnFace);
-  drawWalls(labelled, map.slots, way, range, map.grid);
-  forgetUnseenGround(way, range, map.grid);
-  forgetFloorBeyondWalls(faces, map.grid);
-  forgetFloorBeyondWalls(labelled, map.grid);
-  trimColumnFeet(map.objects, map.grid);
-  completeColumnFeet(map.objects, map.grid);
-  retreatFromUnseen(map.grid);
-  completeSlotLines(map.slots, map.grid);
-  layDownAvailability(map.slots, map.grid);
-  trimWheelStops(map.slots, way, map.grid);
+  completeLayers(m.wallPlaces(), way, m.options.global_map.evidence.range_m, map);
   for (const Impl::Stretch& s : m.stretches) {
     map.nodes.push_back(
         {s.anchor, s.t_ns, liftPose(s.pose.T_world_vehicle, s.pose.z, s.T_odom_vehicle)});
