@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace parkade {
@@ -20,6 +21,18 @@ inline bool contains(const std::array<Eigen::Vector2d, 4>& quad, const Eigen::Ve
     if (cross(quad[(i + 1) % 4] - quad[i], p - quad[i]) > 0.0) ++positive;
   }
   return positive == 0 || positive == 4;
+}
+
+/// A quadrilateral with its edges moved inwards by a margin, m; corners slide along the edges.
+inline std::array<Eigen::Vector2d, 4> inset(const std::array<Eigen::Vector2d, 4>& quad,
+                                            double margin) {
+  std::array<Eigen::Vector2d, 4> inner;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Eigen::Vector2d ahead = (quad[(k + 1) % 4] - quad[k]).normalized();
+    const Eigen::Vector2d behind = (quad[(k + 3) % 4] - quad[k]).normalized();
+    inner[k] = quad[k] + margin / std::abs(cross(ahead, behind)) * (ahead + behind);
+  }
+  return inner;
 }
 
 }  // namespace parkade

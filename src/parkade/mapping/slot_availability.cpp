@@ -14,18 +14,6 @@ using Eigen::Vector2d;
 using Eigen::Vector2i;
 using Corners = std::array<Vector2d, 4>;
 
-// By so many metres inside each edge; slants count along the edges.
-Corners insetOf(const Corners& corners, double inset) {
-  Corners inner;
-  for (std::size_t k = 0; k < 4; ++k) {
-    const Vector2d ahead = corners[(k + 1) % 4] - corners[k];
-    const Vector2d behind = corners[(k + 3) % 4] - corners[k];
-    const double sine = std::abs(cross(ahead.normalized(), behind.normalized()));
-    inner[k] = corners[k] + inset / sine * (ahead.normalized() + behind.normalized());
-  }
-  return inner;
-}
-
 void fill(const Corners& corners, SemanticClass semantic_class, float log_odds, LayeredGrid& grid) {
   Eigen::AlignedBox2d box;
   for (const Vector2d& corner : corners) box.extend(corner);
@@ -49,7 +37,7 @@ void layDownAvailability(const std::vector<MapSlot>& slots, LayeredGrid& grid) {
     if (!slot.isFree() && !slot.isOccupied()) continue;
     const double sure = std::max(slot.probability_free, 1.0 - slot.probability_free);
     const auto log_odds = static_cast<float>(std::log(sure / std::max(1e-3, 1.0 - sure)));
-    fill(insetOf(slot.corners, kInset),
+    fill(inset(slot.corners, kInset),
          slot.isOccupied() ? SemanticClass::kVehicle : SemanticClass::kFloor, log_odds, grid);
   }
 }

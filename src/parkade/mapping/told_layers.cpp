@@ -15,6 +15,7 @@ namespace {
 // Labels are less exact than key points: by themselves, and once these have drawn what they show.
 void completeWalls(const std::vector<Eigen::Vector3d>& wall_places, const std::vector<SE2>& way,
                    double range, ParkingMap& map) {
+  forgetWallsInSlots(map.slots, map.grid);
   const std::vector<WallFace> faces = findWallFaces(wall_places, map.objects, kPointsOnFace);
   drawWalls(faces, map.slots, way, range, map.grid);
   forgetUnseenGround(way, range, map.grid);

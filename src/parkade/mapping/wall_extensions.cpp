@@ -1,8 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Parkade authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
+#include "parkade/geometry/planar.hpp"
 #include "parkade/mapping/wall_points.hpp"
 
 namespace parkade {
@@ -54,6 +57,22 @@ std::optional<std::vector<Vector2i>> floorBehind(const Vector2d& p, const Vector
 }
 
 }  // namespace
+
+void forgetWallsInSlots(const std::vector<MapSlot>& slots, LayeredGrid& grid) {
+  constexpr double kInset = 0.1;  // m
+  std::vector<std::array<Vector2d, 4>> insides;
+  for (const MapSlot& slot : slots) insides.push_back(inset(slot.corners, kInset));
+  std::vector<Vector2i> lost;
+  grid.forEachKnown(kStructureLayer, [&](const Vector2i& index, const GridCell& cell) {
+    if (cell.believed() != SemanticClass::kWall) return;
+    const Vector2d p = grid.centerOf(index);
+    if (std::any_of(insides.begin(), insides.end(),
+                    [&](const auto& inside) { return contains(inside, p); })) {
+      lost.push_back(index);
+    }
+  });
+  grid.forget(kStructureLayer, lost);
+}
 
 void forgetFloorBeyondWalls(const std::vector<WallFace>& faces, LayeredGrid& grid) {
   constexpr double kReach = 8.0;  // m

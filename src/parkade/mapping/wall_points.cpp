@@ -25,14 +25,7 @@ bool inSlot(const std::vector<MapSlot>& slots, const Vector2d& p) {
     const double share =
         std::clamp((p - slot.corners[0]).dot(entrance) / entrance.squaredNorm(), 0.0, 1.0);
     if ((p - slot.corners[0] - share * entrance).norm() < kEntrance) return true;
-    Vector2d middle = Vector2d::Zero();
-    for (const Vector2d& corner : slot.corners) middle += 0.25 * corner;
-    std::array<Vector2d, 4> inner = slot.corners;
-    for (Vector2d& corner : inner) {
-      const Vector2d out = corner - middle;
-      corner -= std::min(1.0, kInside * M_SQRT2 / std::max(out.norm(), 1e-9)) * out;
-    }
-    return contains(inner, p);
+    return contains(inset(slot.corners, kInside), p);
   });
 }
 

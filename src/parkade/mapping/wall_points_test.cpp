@@ -229,5 +229,24 @@ TEST(WallPoints, WhereAWallGoesOnAThinStripOfFloorBehindItIsNone) {
   EXPECT_TRUE(known(11.02, 4.12));
 }
 
+TEST(WallPoints, NoWallStandsInsideASlot) {
+  LayeredGrid grid;
+  for (double x = 0.025; x < 6.0; x += 0.05) {
+    grid.add(GridLayer::kZoneMarkers, {x, 4.5}, SemanticClass::kWall, 2.0F);
+    grid.add(GridLayer::kZoneMarkers, {x, 5.0}, SemanticClass::kWall, 2.0F);
+  }
+  grid.set(GridLayer::kZoneMarkers, grid.cellOf({3.0, 4.3}), SemanticClass::kPillar, 2.0F);
+  MapSlot slot;
+  slot.corners = {Vector2d(2.0, 0.0), Vector2d(4.0, 0.0), Vector2d(4.0, 5.0), Vector2d(2.0, 5.0)};
+  forgetWallsInSlots({slot}, grid);
+  const auto at = [&](double x, double y) {
+    return grid.at(GridLayer::kZoneMarkers, grid.cellOf({x, y})).believed();
+  };
+  EXPECT_EQ(at(3.0, 4.5), SemanticClass::kUnknown);
+  EXPECT_EQ(at(1.5, 4.5), SemanticClass::kWall);
+  EXPECT_EQ(at(3.0, 5.0), SemanticClass::kWall);
+  EXPECT_EQ(at(3.0, 4.3), SemanticClass::kPillar);
+}
+
 }  // namespace
 }  // namespace parkade
