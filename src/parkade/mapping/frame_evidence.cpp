@@ -9,10 +9,15 @@ namespace {
 
 // The confidence level of what may be hidden floor: two in three.
 constexpr int kHidden = 5;
-// Of a wall, the picture's border shows too little to tell where it stands, m.
-constexpr double kWallBorder = 0.6;
 
 }  // namespace
+
+double PackedLabels::toBorder(const Eigen::Vector2d& p_level) const {
+  const Eigen::Vector2d p = geometry.toPixel(p_level);
+  const double px =
+      std::min({p.x(), geometry.width_px - 1 - p.x(), p.y(), geometry.height_px - 1 - p.y()});
+  return px * geometry.metres_per_px;
+}
 
 bool PackedLabels::isMoving(const Eigen::Vector2d& p_level) const {
   return std::any_of(moving.begin(), moving.end(), [&](const Box& box) {
@@ -39,16 +44,12 @@ PackedLabels packLabels(const SemanticFrame& frame) {
   packed.geometry = g;
   packed.pixels.resize(static_cast<std::size_t>(g.width_px) *
                        static_cast<std::size_t>(g.height_px));
-  const int border = static_cast<int>(std::lround(kWallBorder / g.metres_per_px));
   std::size_t at = 0;
   for (int v = 0; v < g.height_px; ++v) {
-    const int to_edge = std::min(v, g.height_px - 1 - v);
     const std::uint8_t* label = labels.ptr<std::uint8_t>(v);
     const std::uint8_t* sure = confidence.empty() ? nullptr : confidence.ptr<std::uint8_t>(v);
     const std::uint8_t* smeared = smear.empty() ? nullptr : smear.ptr<std::uint8_t>(v);
     for (int u = 0; u < g.width_px; ++u, ++at) {
-      const bool at_border = std::min({u, g.width_px - 1 - u, to_edge}) < border;
-      if (at_border && label[u] == static_cast<std::uint8_t>(SemanticClass::kWall)) continue;
       int level = sure == nullptr ? PackedLabels::kConfidenceLevels - 1 : sure[u] >> 5;
       if (smeared != nullptr && smeared[u] != 0) {
         if (smeared[u] == SemanticFrame::kSmear) continue;

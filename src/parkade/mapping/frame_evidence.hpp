@@ -74,6 +74,8 @@ struct PackedLabels {
   }
   static int levelOf(std::uint8_t pixel) { return pixel >> 5; }
   [[nodiscard]] bool isMoving(const Eigen::Vector2d& p_level) const;
+  /// m from a point of the levelled vehicle frame to the picture's nearest border.
+  [[nodiscard]] double toBorder(const Eigen::Vector2d& p_level) const;
 };
 
 PackedLabels packLabels(const SemanticFrame& frame);

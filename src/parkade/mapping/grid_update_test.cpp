@@ -43,27 +43,6 @@ TEST(FrameEvidence, SmearSaysNothing) {
   EXPECT_EQ(PackedLabels::classOf(packLabels(frame).pixels[at]), SemanticClass::kPillar);
 }
 
-TEST(FrameEvidence, AWallAtThePicturesBorderSaysNothing) {
-  SemanticFrame frame;
-  const BevGeometry& g = frame.labels.geometry;
-  const auto wall = static_cast<std::uint8_t>(SemanticClass::kWall);
-  frame.labels.labels = cv::Mat(g.height_px, g.width_px, CV_8UC1, cv::Scalar(wall));
-  const auto at = [&](int row, int column) {
-    return packLabels(frame).pixels[static_cast<std::size_t>(row * g.width_px + column)];
-  };
-  const int beyond = static_cast<int>(0.6 / g.metres_per_px) + 1;
-  for (const int k : {0, beyond - 3}) {
-    EXPECT_EQ(at(k, 100), 0);
-    EXPECT_EQ(at(100, k), 0);
-    EXPECT_EQ(at(g.height_px - 1 - k, 100), 0);
-    EXPECT_EQ(at(100, g.width_px - 1 - k), 0);
-  }
-  EXPECT_NE(at(beyond, 100), 0);
-  EXPECT_NE(at(100, g.width_px - 1 - beyond), 0);
-  frame.labels.labels.setTo(static_cast<std::uint8_t>(SemanticClass::kFloor));
-  EXPECT_NE(at(0, 100), 0);
-}
-
 // The cell 2 m before the car's middle after pictures of it that all show one class everywhere.
 struct ManyPictures {
   LocalMap map{LocalMapOptions()};
@@ -80,7 +59,28 @@ struct ManyPictures {
   [[nodiscard]] SemanticClass at(GridLayer layer) const {
     return map.at(layer, {40, 0}).semantic_class;
   }
+  [[nodiscard]] bool knows(GridLayer layer, double border_m) const {
+    const BevGeometry g;
+    const double y = g.center.y() + 0.5 * g.width_px * g.metres_per_px - border_m;
+    const Eigen::Vector2d p(g.center.x(), y);
+    return map.at(layer, (p / 0.05).array().floor().cast<int>()).known();
+  }
 };
+
+TEST(FrameEvidence, APicturesBorderDoesNotTellWallsFromFloor) {
+  ManyPictures wall;
+  wall.show(SemanticClass::kWall, 1);
+  EXPECT_FALSE(wall.knows(GridLayer::kZoneMarkers, 0.5));
+  EXPECT_TRUE(wall.knows(GridLayer::kZoneMarkers, 0.7));
+  ManyPictures pillar;
+  pillar.show(SemanticClass::kPillar, 1);
+  EXPECT_TRUE(pillar.knows(GridLayer::kZoneMarkers, 0.1));
+  ManyPictures floor;
+  floor.show(SemanticClass::kFloor, 1);
+  EXPECT_FALSE(floor.knows(GridLayer::kZoneMarkers, 0.3));
+  EXPECT_TRUE(floor.knows(GridLayer::kZoneMarkers, 0.5));
+  EXPECT_TRUE(floor.knows(GridLayer::kParkingLines, 0.1));
+}
 
 TEST(FrameEvidence, FloorOverrulesWhatLiesBehindAnEdge) {
   ManyPictures foot;

@@ -13,6 +13,9 @@ template <class Touch, class HasDynamic>
 void updateLayers(const PackedLabels& labels, SemanticClass c, const EvidenceSteps& steps,
                   const Eigen::Vector2d& p_level, const Touch& touch,
                   const HasDynamic& has_dynamic) {
+  // A picture's border shows too little of a wall to tell it from floor, or where it stands.
+  constexpr double kFloorBorder = 0.4;  // m
+  constexpr double kWallBorder = 0.6;   // m
   const LayerRole role = roleOf(c);
   switch (role) {
     case LayerRole::kNone:
@@ -29,11 +32,14 @@ void updateLayers(const PackedLabels& labels, SemanticClass c, const EvidenceSte
       GridCell& marked = touch(GridLayer::kRoadMarkers);
       const bool stop = marked.semantic_class == SemanticClass::kWheelStop;
       addSteps(marked, marker ? c : kFloor, marker || stop ? steps.seen : steps.bare);
-      addSteps(touch(GridLayer::kZoneMarkers), kFloor, steps.seen);
+      if (labels.toBorder(p_level) > kFloorBorder) {
+        addSteps(touch(GridLayer::kZoneMarkers), kFloor, steps.seen);
+      }
       if (has_dynamic()) addSteps(touch(GridLayer::kDynamic), kFloor, steps.dynamic);
       return;
     }
     case LayerRole::kStructure:
+      if (c == SemanticClass::kWall && labels.toBorder(p_level) <= kWallBorder) return;
       addSteps(touch(GridLayer::kZoneMarkers), c, steps.seen);
       return;
     case LayerRole::kVehicle:
