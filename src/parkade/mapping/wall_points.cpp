@@ -3,6 +3,7 @@
 #include "parkade/mapping/wall_points.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "parkade/geometry/planar.hpp"
@@ -15,18 +16,30 @@ using Eigen::Vector2d;
 using Eigen::Vector2i;
 using Eigen::Vector3d;
 
-// Whether a told slot reaches over a place by more than its lines and a bumper's play, or is
-// entered over it.
-bool inSlot(const std::vector<MapSlot>& slots, const Vector2d& p) {
-  constexpr double kInside = 0.3;    // m
-  constexpr double kEntrance = 0.4;  // m
-  return std::any_of(slots.begin(), slots.end(), [&](const MapSlot& slot) {
-    const Vector2d entrance = slot.corners[1] - slot.corners[0];
+// A told slot, as walls may not run through it: off its lines by a bumper's play, and where it is
+// entered.
+struct SlotGround {
+  explicit SlotGround(const MapSlot& slot)
+      : entrance_left(slot.corners[0]),
+        entrance(slot.corners[1] - slot.corners[0]),
+        inside(inset(slot.corners, kInside)) {}
+
+  [[nodiscard]] bool holds(const Vector2d& p) const {
     const double share =
-        std::clamp((p - slot.corners[0]).dot(entrance) / entrance.squaredNorm(), 0.0, 1.0);
-    if ((p - slot.corners[0] - share * entrance).norm() < kEntrance) return true;
-    return contains(inset(slot.corners, kInside), p);
-  });
+        std::clamp((p - entrance_left).dot(entrance) / entrance.squaredNorm(), 0.0, 1.0);
+    return (p - entrance_left - share * entrance).norm() < kEntrance || contains(inside, p);
+  }
+
+  static constexpr double kInside = 0.3;    // m
+  static constexpr double kEntrance = 0.4;  // m
+  Vector2d entrance_left;
+  Vector2d entrance;
+  std::array<Vector2d, 4> inside;
+};
+
+bool inSlot(const std::vector<SlotGround>& slots, const Vector2d& p) {
+  return std::any_of(slots.begin(), slots.end(),
+                     [&](const SlotGround& slot) { return slot.holds(p); });
 }
 
 bool besideVehicle(const LayeredGrid& grid, const Vector2d& p) {
@@ -134,6 +147,7 @@ void drawWalls(const std::vector<WallFace>& faces, const std::vector<MapSlot>& s
   constexpr double kHalfCar = 0.9;  // m
   if (way.empty()) return;
   const double step = 0.5 * grid.resolution();
+  const std::vector<SlotGround> grounds(slots.begin(), slots.end());
   std::vector<Vector2d> eyes;
   forEachEye(way, [&](const Vector2d& eye) { eyes.push_back(eye); });
   for (const WallFace& face : faces) {
@@ -144,7 +158,7 @@ void drawWalls(const std::vector<WallFace>& faces, const std::vector<MapSlot>& s
     const int count = static_cast<int>(length / step) + 1;
     for (int k = 0; k < count; ++k) {
       const Vector2d p = face.from + k * step * along;
-      const bool elsewise = inSlot(slots, p) || besideVehicle(grid, p) ||
+      const bool elsewise = inSlot(grounds, p) || besideVehicle(grid, p) ||
                             (nearestOf(way, p).translation() - p).norm() < kHalfCar;
       if (elsewise) {
         ++refused;
