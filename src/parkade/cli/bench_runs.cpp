@@ -123,7 +123,8 @@ Result<Json> judgeMap(const std::string& folder, const std::string& sequence) {
   if (!truth) return truth.error();
   const Result<PlacedMap> placed = loadPlacedMap(folder, truth->driven);
   if (!placed) return placed.error();
-  return Json::parse(mapEvaluationJson(evaluateMap(placed->map, placed->T_truth_map, *truth, {})));
+  return Json::parse(
+      mapEvaluationJson(evaluateMap(placed->map, SE2::fromSE3(placed->T_truth_map), *truth, {})));
 }
 
 Status judge(JudgedRun& run) {

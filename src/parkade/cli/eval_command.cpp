@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "parkade/cli/command.hpp"
 #ifdef PARKADE_WITH_EVAL_MAP
@@ -37,6 +39,7 @@ struct EvalArguments {
   std::string plot;
   std::string report;
   std::string plane = "auto";
+  std::vector<std::string> in_map;  // map and the sequence that it was made on
   EvaluationOptions options;
 };
 
@@ -53,6 +56,7 @@ constexpr const char* kEvalFooter =
     "Examples:\n"
     "  parkade eval OUT SEQ --json metrics.json --plot error.svg\n"
     "  parkade eval map OUT SEQ --json map.json --picture errors.png\n"
+    "  parkade eval LATER SEQ2 --in-map OUT SEQ\n"
     "  parkade eval estimate.tum groundtruth.tum --align sim3 --rpe-delta 1 --rpe-unit s";
 
 // A run's trajectory, where the path is a run's folder.
@@ -110,23 +114,45 @@ Status checkClocks(const TrajectoryFile& estimate, const TrajectoryFile& referen
   return {};
 }
 
+#ifdef PARKADE_WITH_EVAL_MAP
+// Lays the poses of a run in a saved map where the truth of the drive that made it says that it
+// lies.
+Status placeInMap(const EvalArguments& arguments, Trajectory& poses) {
+  const Result<MapTruth> truth = readMapTruth(arguments.in_map[1]);
+  if (!truth) return truth.error();
+  const Result<PlacedMap> placed = loadPlacedMap(arguments.in_map[0], truth->driven);
+  if (!placed) return placed.error();
+  for (StampedPose& pose : poses) pose.T_world_body = placed->T_truth_map * pose.T_world_body;
+  return {};
+}
+#endif
+
 Status evaluateFiles(const EvalArguments& arguments) {
-  const auto estimate = read(estimatePath(arguments.trajectory), arguments.format, arguments.times);
+  auto estimate = read(estimatePath(arguments.trajectory), arguments.format, arguments.times);
   if (!estimate) return estimate.error();
   const auto reference =
       read(referencePath(arguments.reference), arguments.reference_format, arguments.times);
   if (!reference) return reference.error();
   if (auto status = checkClocks(*estimate, *reference, arguments); !status) return status;
 
-  auto evaluation = evaluate(estimate->poses, reference->poses, arguments.options);
+  const bool in_map = !arguments.in_map.empty();
+  EvaluationOptions options = arguments.options;
+#ifdef PARKADE_WITH_EVAL_MAP
+  if (in_map) {
+    if (auto status = placeInMap(arguments, estimate->poses); !status) return status;
+    options.align = "none";
+  }
+#endif
+
+  auto evaluation = evaluate(estimate->poses, reference->poses, options);
   if (!evaluation) {
     return Error{fmt::format("{} against {}: {}", arguments.trajectory, arguments.reference,
                              evaluation.error().message)};
   }
-  if (auto status = judgeCovariances(arguments.trajectory, estimate->poses, reference->poses,
-                                     arguments.options.association, *evaluation);
-      !status) {
-    return status;
+  if (!in_map) {  // the covariances of a run in a map leave out the map's own errors
+    auto status = judgeCovariances(arguments.trajectory, estimate->poses, reference->poses,
+                                   options.association, *evaluation);
+    if (!status) return status;
   }
   EvaluationLabels labels{arguments.trajectory, arguments.reference, !estimate->has_stamps};
   if (labels.by_index && estimate->poses.size() != reference->poses.size()) {

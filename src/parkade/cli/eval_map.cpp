@@ -35,7 +35,7 @@ Status evaluateMapFile(const EvalMapArguments& arguments) {
   const Result<PlacedMap> placed = loadPlacedMap(arguments.map, truth->driven);
   if (!placed) return placed.error();
   const MapEvaluation evaluation =
-      evaluateMap(placed->map, placed->T_truth_map, *truth, arguments.options);
+      evaluateMap(placed->map, SE2::fromSE3(placed->T_truth_map), *truth, arguments.options);
   fmt::print("map        {}\ntruth      {}\n\n{}", arguments.map, arguments.sequence,
              mapEvaluationTable(evaluation));
   if (!arguments.json.empty()) {
@@ -70,7 +70,7 @@ Result<PlacedMap> loadPlacedMap(const std::string& path, const Trajectory& drive
   } else {
     return Error{fmt::format("{}: the map has no poses: where it lies is not known", path)};
   }
-  const Result<SE2> place = placeByFirstPose(first.t_ns, first.T_world_body, driven);
+  const Result<SE3> place = placeByFirstPose(first.t_ns, first.T_world_body, driven);
   if (!place) return Error{fmt::format("{}: {}", path, place.error().message)};
   return PlacedMap{std::move(map).value(), *place};
 }

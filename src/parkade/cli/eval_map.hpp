@@ -13,7 +13,7 @@ namespace parkade::cli {
 /// A map with where it lies in the truth.
 struct PlacedMap {
   ParkingMap map;
-  SE2 T_truth_map;
+  SE3 T_truth_map;  ///< turned about the vertical only
 };
 
 /// The map of a run's folder, placed by the run's first pose, or a map file, placed by its first

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,6 +21,7 @@
 #include "parkade/core/options.hpp"
 #include "parkade/core/progress.hpp"
 #include "parkade/io/file.hpp"
+#include "parkade/mapping/map_file.hpp"
 #include "parkade/pipeline/mapping_run.hpp"
 
 namespace parkade::cli {
@@ -29,6 +31,7 @@ struct RunArguments {
   SourceRequest source;
   std::string out;
   std::string method = "vis";
+  std::string map;
   std::string config;
   std::vector<std::string> assignments;
   std::string debug_images;
@@ -70,6 +73,22 @@ RunMethod methodOf(const std::string& name) {
   return name == "avp-slam" ? RunMethod::kAvpSlam : RunMethod::kVis;
 }
 
+// map: file, or folder of the run that made it.
+Status locateInMap(const std::string& map, MappingRun& run) {
+  const Result<ParkingMap> saved =
+      loadMap(std::filesystem::is_directory(map) ? joinPath(map, "map.db") : map);
+  if (!saved) return saved.error();
+  if (saved->slots.empty()) {
+    return Error{fmt::format("{}: holds no slots to find the car by", map)};
+  }
+  Status status = run.locateIn(*saved);
+  if (!status) {
+    return Error{
+        fmt::format("--map {}: {}; take --method fused or semantic", map, status.error().message)};
+  }
+  return status;
+}
+
 Status runSequence(const RunArguments& arguments) {
   PipelineOptions options;
   if (Status status = configure(arguments, options); !status) return status;
@@ -88,6 +107,9 @@ Status runSequence(const RunArguments& arguments) {
   if (!opened) return opened.error();
   auto run = MappingRun::create(opened->rig, options, arguments.threads, method);
   if (!run) return run.error();
+  if (!arguments.map.empty()) {
+    if (Status located = locateInMap(arguments.map, **run); !located) return located;
+  }
   // Last, for it removes what an earlier run left there.
   if (Status status = prepareRunFolder(arguments.out, arguments.force); !status) return status;
 
@@ -159,6 +181,10 @@ void addRunCommand(CLI::App& app, int& exit_code) {
           "wheels and gyroscope)")
       ->check(CLI::IsMember({"fused", "semantic", "vis", "avp-slam"}))
       ->capture_default_str();
+  command->add_option(
+      "--map", a->map,
+      "Find the car in this saved map (map.db, or the run's folder) and localise in "
+      "it: all poses are the map's");
   command->add_flag("--final", a->with_final,
                     "Also write trajectory_final.tum: every pose with all that came after it");
   command->add_flag("--force", a->force, "Write into a folder that holds something else");

@@ -289,15 +289,18 @@ void scoreObjects(const ParkingMap& map, const MapTruth& truth, const Way& way,
 
 }  // namespace
 
-Result<SE2> placeByFirstPose(TimeNs t_ns, const SE3& T_map_vehicle, const Trajectory& driven) {
+Result<SE3> placeByFirstPose(TimeNs t_ns, const SE3& T_map_vehicle, const Trajectory& driven) {
   AssociationOptions options;
   options.interpolate = true;
   const Result<Association> pairs = associate({{t_ns, T_map_vehicle}}, driven, options);
   if (!pairs) {
     return Error{fmt::format("no reference where the map begins: {}", pairs.error().message)};
   }
-  return SE2::fromSE3(pairs->reference.front().T_world_body) *
-         SE2::fromSE3(pairs->estimate.front().T_world_body).inverse();
+  const SE3& there = pairs->reference.front().T_world_body;
+  const SE3& here = pairs->estimate.front().T_world_body;
+  SE3 T = (SE2::fromSE3(there) * SE2::fromSE3(here).inverse()).toSE3();
+  T.translation().z() = there.translation().z() - here.translation().z();
+  return T;
 }
 
 MapEvaluation evaluateMap(const ParkingMap& map, const SE2& T_truth_map, const MapTruth& truth,

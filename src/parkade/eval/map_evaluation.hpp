@@ -102,7 +102,7 @@ struct MapEvaluation {
 
 /// Where the map's frame lies in the truth's: the map's first pose put on the truth's pose of that
 /// instant, over the ground. Fails where the reference does not cover the instant.
-Result<SE2> placeByFirstPose(TimeNs t_ns, const SE3& T_map_vehicle, const Trajectory& driven);
+Result<SE3> placeByFirstPose(TimeNs t_ns, const SE3& T_map_vehicle, const Trajectory& driven);
 
 MapEvaluation evaluateMap(const ParkingMap& map, const SE2& T_truth_map, const MapTruth& truth,
                           const MapEvaluationOptions& options = {});

@@ -263,11 +263,13 @@ TEST(MapEvaluation, PictureShowsTheErrorsInTheirColours) {
 TEST(MapEvaluation, MapIsPlacedByItsFirstPose) {
   const MapTruth truth = rowTruth(4);
   const SE3 T_map_vehicle(SO3::fromYawPitchRoll(0.2, 0.01, 0.0), {1.0, 2.0, 0.0});
-  const Result<SE2> T = placeByFirstPose(truth.driven[3].t_ns, T_map_vehicle, truth.driven);
+  const Result<SE3> T = placeByFirstPose(truth.driven[3].t_ns, T_map_vehicle, truth.driven);
   ASSERT_TRUE(T.ok());
-  const SE2 back = *T * SE2::fromSE3(T_map_vehicle);
+  const SE3 placed = *T * T_map_vehicle;
+  const SE2 back = SE2::fromSE3(placed);
   EXPECT_NEAR(back.translation().x(), 0.75, 1e-9);
   EXPECT_NEAR(back.angle(), 0.0, 1e-9);
+  EXPECT_NEAR(placed.translation().z(), truth.driven[3].T_world_body.translation().z(), 1e-9);
   EXPECT_FALSE(
       placeByFirstPose(truth.driven.back().t_ns + kNsPerSecond * 100, T_map_vehicle, truth.driven)
           .ok());

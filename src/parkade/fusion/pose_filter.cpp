@@ -85,6 +85,24 @@ std::int64_t PoseFilter::addHeadingReference(double sigma) {
   return anchor;
 }
 
+std::int64_t PoseFilter::addPlace(const GroundPose& pose, const Matrix4& covariance) {
+  const Eigen::Index n = P_.rows();
+  Eigen::MatrixXd P = Eigen::MatrixXd::Zero(n + kErrors, n + kErrors);
+  P.topLeftCorner(n, n) = P_;
+  P.bottomRightCorner<kErrors, kErrors>() = covariance;
+  P_ = std::move(P);
+  poses_.push_back(pose);
+  ids_.push_back(next_id_);
+  return next_id_++;
+}
+
+void PoseFilter::rebase(const SE2& T_new_world, double dz) {
+  for (GroundPose& pose : poses_) {
+    pose.T_world_vehicle = T_new_world * pose.T_world_vehicle;
+    pose.z += dz;
+  }
+}
+
 bool PoseFilter::hasAnchor(std::int64_t anchor) const {
   return std::binary_search(ids_.begin(), ids_.end(), anchor);
 }

@@ -46,6 +46,12 @@ class PoseFilter {
   /// garage's axes, which was read off with an error of sigma: unlike the readings' own errors it
   /// stays the same, and the filter learns it.
   std::int64_t addHeadingReference(double sigma);
+  /// A place that is known by other means than from the car, such as the origin of a saved map,
+  /// with an error of its own.
+  std::int64_t addPlace(const GroundPose& pose, const Matrix4& covariance);
+  /// Calls the world otherwise: every pose seen from another origin, dz higher. All errors stay,
+  /// for they are seen from the poses themselves.
+  void rebase(const SE2& T_new_world, double dz);
   /// Forgets an anchor; the rest keeps what it learned through it.
   void removeAnchor(std::int64_t anchor);
 

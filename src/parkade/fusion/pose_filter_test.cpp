@@ -234,6 +234,26 @@ TEST(PoseFilter, HeadingReferenceStopsTheDriftAndKeepsItsOwnError) {
   EXPECT_GT(sigma, 0.3 * kReference);
 }
 
+TEST(PoseFilter, APlaceTellsWhereTheWorldLiesAndRebasingChangesNoError) {
+  PoseFilter filter({SE2(0.3, {1.0, 2.0}), 0.0}, 1e-6 * Eigen::Matrix4d::Identity());
+  filter.predict(SE2(0.1, {4.0, 0.0}), 0.0, 1e-4 * Eigen::Matrix4d::Identity());
+  const std::int64_t seen_from = filter.addAnchor();
+  const SE2 T_place_car(-1.2, {20.0, -7.0});
+  // Linear only about where it is.
+  const SE2 T_world_place = filter.pose().T_world_vehicle * T_place_car.inverse();
+  const std::int64_t place =
+      filter.addPlace({T_world_place, 0.0}, 100.0 * Eigen::Matrix4d::Identity());
+  const Eigen::Matrix3d information = 1e4 * Eigen::Matrix3d::Identity();
+  ASSERT_TRUE(filter.updateBetween(place, seen_from, T_place_car, information, 0.999).accepted);
+  const Eigen::Matrix4d before = filter.relativeCovariance(place);
+  EXPECT_NEAR(before(0, 0), 1e-4, 2e-6);  // the measurement's own
+  filter.rebase(filter.anchor(place).T_world_vehicle.inverse(), 0.5);
+  EXPECT_LT(filter.anchor(place).T_world_vehicle.log().norm(), 1e-12);
+  EXPECT_LT((filter.pose().T_world_vehicle.inverse() * T_place_car).log().norm(), 1e-3);
+  EXPECT_DOUBLE_EQ(filter.pose().z, 0.5);
+  EXPECT_LT((filter.relativeCovariance(place) - before).norm(), 1e-12);
+}
+
 TEST(PoseFilter, CovarianceStaysSymmetricAndPositive) {
   PoseFilter filter;
   Random random(9);

@@ -87,6 +87,10 @@ std::optional<double> Compass::read(const SemanticFrame& frame, double expected_
   return expected_heading + sum / along_axes - axis_shift;
 }
 
+void Compass::turnWorld(double angle) {
+  for (Line& line : seen_) line.direction += angle;
+}
+
 double CompassScatter::add(double off_odometry) {
   constexpr std::size_t kReadings = 15;
   constexpr double kPrior = 4.0;   // readings that the usual scatter counts for

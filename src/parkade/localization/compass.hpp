@@ -55,6 +55,10 @@ class Compass {
   std::optional<double> read(const SemanticFrame& frame, double expected_heading,
                              double travelled_m, double axis_shift = 0.0);
 
+  /// The world is called otherwise from now on: turned by an angle (rad). Axes that are learned
+  /// stay as they were, in the world of then (axis_shift of read() holds the turn).
+  void turnWorld(double angle);
+
   /// The direction of the axes in the world as learned, modulo 90 degrees, once it is.
   [[nodiscard]] std::optional<double> axis() const {
     return learned_ ? std::optional<double>(axis_) : std::nullopt;

@@ -147,6 +147,10 @@ void ObjectRegistry::moveWithAnchors(const std::function<SE2(std::int64_t)>& cor
   mergeDuplicates();
 }
 
+void ObjectRegistry::raise(double dz) {
+  for (Track& track : tracks_) track.position.z() += dz;
+}
+
 double ObjectRegistry::existence(const Track& track) const {
   const double l = track.existence.logOdds(track.isUpright() ? options_.upright : options_.paint);
   if (track.semantic_class != SemanticClass::kPillar) return l;

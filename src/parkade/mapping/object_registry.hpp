@@ -97,6 +97,8 @@ class ObjectRegistry {
               const std::vector<LevelView>& views = {});
   /// As SlotRegistry's.
   void moveWithAnchors(const std::function<SE2(std::int64_t)>& correction);
+  /// Moves all of them up, m: the world is called otherwise.
+  void raise(double dz);
   /// Those that exist by what plain sight shows, none on another of its class; ordered by id.
   /// Without labels, and where there is no outline: those observed often enough.
   [[nodiscard]] std::vector<MapObject> objects() const;

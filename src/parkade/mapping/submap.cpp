@@ -12,6 +12,17 @@ namespace {
 constexpr double kParallel = 0.94;  // cos 20 degrees
 constexpr double kMergeAcross = 0.06;
 constexpr double kMergeAlong = 0.12;
+constexpr double kMergePoints = 0.3;
+
+std::int64_t keyOf(int x, int y) {
+  return (static_cast<std::int64_t>(x) << 32) ^
+         static_cast<std::int64_t>(static_cast<std::uint32_t>(y));
+}
+
+std::int64_t keyOf(const Eigen::Vector2d& p, double cell) {
+  return keyOf(static_cast<int>(std::floor(p.x() / cell)),
+               static_cast<int>(std::floor(p.y() / cell)));
+}
 
 }  // namespace
 
@@ -52,9 +63,7 @@ void LineMap::add(const LinePoint& point) {
   if (best < 0) {
     features_.push_back({p, point.normal, weight, point.semantic_class, 1});
     const int index = static_cast<int>(features_.size()) - 1;
-    cells_[keyOf(static_cast<int>(std::floor(p.x() / kCell)),
-                 static_cast<int>(std::floor(p.y() / kCell)))]
-        .push_back(index);
+    cells_[keyOf(p, kCell)].push_back(index);
     return;
   }
   // The feature may drift out of its cell by a fraction of kMergeAlong; searches have that margin.
@@ -96,16 +105,22 @@ bool isPointLandmark(SemanticClass semantic_class) {
   }
 }
 
+void Submap::addLine(const LinePoint& point) {
+  low_ = low_.cwiseMin(point.p_level);
+  high_ = high_.cwiseMax(point.p_level);
+  lines_.add(point);
+}
+
 void Submap::addPoint(const PointFeature& point) {
   low_ = low_.cwiseMin(point.p);
   high_ = high_.cwiseMax(point.p);
-  constexpr double kMerge = 0.3;
-  auto* same =
-      const_cast<PointFeature*>(nearestPoint(point.p, point.semantic_class, point.text, kMerge));
-  if (same == nullptr) {
+  const int index = nearestPointIndex(point.p, point.semantic_class, point.text, kMergePoints);
+  if (index < 0) {
+    point_cells_[keyOf(point.p, kPointCell)].push_back(static_cast<int>(points_.size()));
     points_.push_back(point);
     return;
   }
+  PointFeature* same = &points_[static_cast<std::size_t>(index)];
   const Eigen::Matrix2d gain = same->covariance * (same->covariance + point.covariance).inverse();
   same->p += gain * (point.p - same->p);
   same->covariance = ((Eigen::Matrix2d::Identity() - gain) * same->covariance).eval();
@@ -114,19 +129,35 @@ void Submap::addPoint(const PointFeature& point) {
   ++same->count;
 }
 
-const PointFeature* Submap::nearestPoint(const Eigen::Vector2d& p, SemanticClass c,
-                                         const std::string& text, double radius) const {
-  const PointFeature* best = nullptr;
+int Submap::nearestPointIndex(const Eigen::Vector2d& p, SemanticClass c, const std::string& text,
+                              double radius) const {
+  int best = -1;
   double best_distance = radius;
-  for (const PointFeature& f : points_) {
-    if (f.semantic_class != c) continue;
-    if (!text.empty() && !f.text.empty() && text != f.text) continue;
-    const double distance = (p - f.p).norm();
-    if (distance >= best_distance) continue;
-    best_distance = distance;
-    best = &f;
+  // A point that others were fused with may have left its cell, by less than it took them from.
+  const double reach = radius + kMergePoints;
+  const auto cellOf = [](double x) { return static_cast<int>(std::floor(x / kPointCell)); };
+  for (int y = cellOf(p.y() - reach); y <= cellOf(p.y() + reach); ++y) {
+    for (int x = cellOf(p.x() - reach); x <= cellOf(p.x() + reach); ++x) {
+      const auto it = point_cells_.find(keyOf(x, y));
+      if (it == point_cells_.end()) continue;
+      for (const int index : it->second) {
+        const PointFeature& f = points_[static_cast<std::size_t>(index)];
+        if (f.semantic_class != c) continue;
+        if (!text.empty() && !f.text.empty() && text != f.text) continue;
+        const double distance = (p - f.p).norm();
+        if (distance >= best_distance) continue;
+        best_distance = distance;
+        best = index;
+      }
+    }
   }
   return best;
+}
+
+const PointFeature* Submap::nearestPoint(const Eigen::Vector2d& p, SemanticClass c,
+                                         const std::string& text, double radius) const {
+  const int index = nearestPointIndex(p, c, text, radius);
+  return index < 0 ? nullptr : &points_[static_cast<std::size_t>(index)];
 }
 
 void Submap::add(const SemanticFrame& frame, const SE2& T_submap_vehicle) {
@@ -135,9 +166,7 @@ void Submap::add(const SemanticFrame& frame, const SE2& T_submap_vehicle) {
     LinePoint point = seen;
     point.p_level = T_submap_vehicle * seen.p_level;
     point.normal = R * seen.normal;
-    low_ = low_.cwiseMin(point.p_level);
-    high_ = high_.cwiseMax(point.p_level);
-    lines_.add(point);
+    addLine(point);
   }
   for (const SlotObservation& slot : frame.slots) {
     for (int i = 0; i < 2; ++i) {

@@ -43,10 +43,6 @@ class LineMap {
 
  private:
   static constexpr double kCell = 0.25;
-  static std::int64_t keyOf(int x, int y) {
-    return (static_cast<std::int64_t>(x) << 32) ^
-           static_cast<std::int64_t>(static_cast<std::uint32_t>(y));
-  }
   template <class Visit>
   void around(const Eigen::Vector2d& p, double radius, const Visit& visit) const;
 
@@ -60,6 +56,9 @@ class Submap {
  public:
   /// Enters a frame seen from T_submap_vehicle.
   void add(const SemanticFrame& frame, const SE2& T_submap_vehicle);
+  /// Enters a point of a line, or a point landmark, given in the submap's frame.
+  void addLine(const LinePoint& point);
+  void addPoint(const PointFeature& point);
   [[nodiscard]] const LineMap& lines() const { return lines_; }
   [[nodiscard]] const std::vector<PointFeature>& points() const { return points_; }
   /// Nearest point of that class within the radius whose text does not contradict; null if none.
@@ -72,9 +71,12 @@ class Submap {
   [[nodiscard]] Eigen::Vector2d middle() const { return 0.5 * (low_ + high_); }
 
  private:
-  void addPoint(const PointFeature& point);
+  static constexpr double kPointCell = 1.0;  // m
+  [[nodiscard]] int nearestPointIndex(const Eigen::Vector2d& p, SemanticClass c,
+                                      const std::string& text, double radius) const;
   LineMap lines_;
   std::vector<PointFeature> points_;
+  std::unordered_map<std::int64_t, std::vector<int>> point_cells_;  // where they were entered
   int frames_ = 0;
   Eigen::Vector2d low_ = Eigen::Vector2d::Constant(1e9);
   Eigen::Vector2d high_ = Eigen::Vector2d::Constant(-1e9);

@@ -313,4 +313,41 @@ SemanticFrame PlanObserver::observe(TimeNs t_ns, const SE2& T_world_vehicle, Ran
   return frame;
 }
 
+ParkingMap mapOf(const Plan& plan, const SE2& T_map_plan) {
+  ParkingMap map;
+  const PlanObserver observer(plan, {});
+  const double step = 0.5 * map.grid.resolution();
+  for (double y = plan.min.y(); y < plan.max.y(); y += step) {
+    for (double x = plan.min.x(); x < plan.max.x(); x += step) {
+      const Vector2d p(x, y);
+      const SemanticClass c = observer.classAt(p);
+      const bool line = c == SemanticClass::kSlotLine || c == SemanticClass::kLaneLine;
+      constexpr float kSure = 2.0F;
+      map.grid.add(GridLayer::kParkingLines, T_map_plan * p, line ? c : SemanticClass::kFloor,
+                   kSure);
+    }
+  }
+  std::int64_t id = 0;
+  for (const PlanSlot& seen : plan.slots) {
+    MapSlot slot;
+    slot.id = ++id;
+    for (std::size_t i = 0; i < 4; ++i) slot.corners[i] = T_map_plan * seen.corners[i];
+    slot.corner_sigma = 0.01;
+    slot.observations = 10;
+    map.slots.push_back(slot);
+  }
+  for (const PlanObject& seen : plan.objects) {
+    MapObject object;
+    object.id = ++id;
+    object.semantic_class = seen.semantic_class;
+    object.position << T_map_plan * seen.position.head<2>(), seen.position.z();
+    object.heading = wrapAngle(seen.heading + T_map_plan.angle());
+    object.text = seen.text;
+    object.position_sigma = 0.02;
+    object.observations = 10;
+    map.objects.push_back(object);
+  }
+  return map;
+}
+
 }  // namespace parkade::testing

@@ -8,6 +8,7 @@
 
 #include "parkade/core/random.hpp"
 #include "parkade/geometry/se2.hpp"
+#include "parkade/mapping/parking_map.hpp"
 #include "parkade/types/semantic_features.hpp"
 
 // For tests only: a drawn garage, and what the semantics room would say of it.
@@ -91,6 +92,9 @@ class PlanObserver {
   int width_ = 0;
   std::vector<std::uint8_t> raster_;
 };
+
+/// The plan as a perfect map of it: layers, slots, objects; seen from T_map_plan.
+ParkingMap mapOf(const Plan& plan, const SE2& T_map_plan = {});
 
 inline bool insideBox(const Eigen::Vector2d& p, const Eigen::Vector2d& center, double heading,
                       const Eigen::Vector2d& size) {

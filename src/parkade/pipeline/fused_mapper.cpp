@@ -28,7 +28,8 @@ PoseEstimate FusedMapper::Impl::estimate() const {
   to_level.topLeftCorner<3, 3>() = R_level;
   to_level.bottomRightCorner<3, 3>() = R_level;
   Matrix6d level = to_level * odometry->covariance.topLeftCorner<6, 6>() * to_level.transpose();
-  const Eigen::Matrix4d P = filter.covariance();
+  const Eigen::Matrix4d P =
+      located() ? filter.relativeCovariance(saved->place) : filter.covariance();
   constexpr int kAt[4] = {0, 1, 5, 2};  // x, y, angle, z
   for (const int i : kAt) {
     level.row(i).setZero();
@@ -38,6 +39,10 @@ PoseEstimate FusedMapper::Impl::estimate() const {
     for (int j = 0; j < 4; ++j) level(kAt[i], kAt[j]) = P(i, j);
   }
   e.covariance.topLeftCorner<6, 6>() = to_level.transpose() * level * to_level;
+  if (saved && !located()) {
+    e.health = Health::kInitialising;
+    e.reason = "not yet found in the saved map";
+  }
   return e;
 }
 
@@ -91,8 +96,9 @@ void FusedMapper::Impl::beginStretch(const View& view) {
   turned_at_stretch = view.turned;
   ++statistics.anchors;
   if (static_cast<int>(filter.anchors().size()) > options.submaps.max_anchors) {
-    const auto oldest = std::find_if(filter.anchors().begin(), filter.anchors().end(),
-                                     [this](std::int64_t id) { return id != axes; });
+    const auto oldest = std::find_if(
+        filter.anchors().begin(), filter.anchors().end(),
+        [this](std::int64_t id) { return id != axes && !(saved && id == saved->place); });
     filter.removeAnchor(*oldest);
   }
 }
@@ -104,6 +110,8 @@ void FusedMapper::Impl::enterSubmap(const SemanticFrame& frame, const View& view
 }
 
 void FusedMapper::Impl::followCorrections() {
+  // The world is the saved map's: what is learned of where that lies moves all the rest.
+  if (located()) rebase(filter.anchor(saved->place).T_world_vehicle.inverse(), 0.0);
   std::unordered_map<std::int64_t, SE2> moved;
   constexpr double kNoticeable = 0.002;
   double farthest = 0.0;
@@ -151,6 +159,11 @@ FusedMapper::FusedMapper(const FusedMapperOptions& options, std::vector<Eigen::V
     : impl_(std::make_unique<Impl>(options, std::move(viewpoints))) {}
 FusedMapper::~FusedMapper() = default;
 
+Status FusedMapper::locateIn(const ParkingMap& map) {
+  impl_->saved.emplace(map);
+  return {};
+}
+
 PoseEstimate FusedMapper::addOdometry(const PoseEstimate& odometry) {
   Impl& m = *impl_;
   m.predict(odometry);
@@ -193,7 +206,8 @@ PoseEstimate FusedMapper::addSemantics(const SemanticFrame& frame,
   const bool begins = m.stretches.empty() || view.travelled - m.open().begin_m >= o.length_m ||
                       view.turned - m.turned_at_stretch >= o.rotation_deg * kDegree;
   if (begins) m.beginStretch(view);
-  if (view.travelled - m.last_registered >= o.register_distance_m) {
+  const bool registers = view.travelled - m.last_registered >= o.register_distance_m;
+  if (registers) {
     m.last_registered = view.travelled;
     m.readCompass(frame, view);
     m.registerFrameToSubmaps(frame, view);
@@ -202,6 +216,7 @@ PoseEstimate FusedMapper::addSemantics(const SemanticFrame& frame,
     m.last_entered = view.travelled;
     m.enterSubmap(frame, view);
   }
+  if (m.saved && registers) m.locate(frame, view);
   if (std::exchange(m.corrected, false)) m.followCorrections();
   m.enterMaps(frame, views, view);
   if (!begins) m.filter.removeAnchor(view.anchor);

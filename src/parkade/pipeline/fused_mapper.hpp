@@ -9,6 +9,7 @@
 #include "parkade/fusion/odometry.hpp"
 #include "parkade/localization/compass.hpp"
 #include "parkade/localization/loop_closure.hpp"
+#include "parkade/localization/map_search.hpp"
 #include "parkade/localization/registration.hpp"
 #include "parkade/localization/row_compass.hpp"
 #include "parkade/mapping/global_map.hpp"
@@ -71,6 +72,32 @@ struct SubmapOptions {
   }
 };
 
+/// How a drive finds itself in a saved map and holds to it.
+struct SavedMapOptions {
+  double gathered_m = 30.0;
+  double least_m = 6.0;
+  double every_m = 2.0;
+  double agree_m = 0.3;
+  double agree_deg = 1.0;
+  double sigma_m = 0.02;
+  double sigma_deg = 0.1;
+  MapSearchOptions search;
+
+  void visit(OptionVisitor& v) {
+    v.field("gathered_m", gathered_m, "m", "What was seen over this much of the way is looked for.",
+            1.0, 500.0);
+    v.field("least_m", least_m, "m", "Nor before so much of it.", 0.0, 500.0);
+    v.field("every_m", every_m, "m", "Way between two searches.", 0.1, 100.0);
+    v.field("agree_m", agree_m, "m", "Two searches one after the other that agree to this find it.",
+            0.01, 5.0);
+    v.field("agree_deg", agree_deg, "deg", "The same of the heading.", 0.01, 20.0);
+    v.field("sigma_m", sigma_m, "m",
+            "Error that registrations to one place of the map share: its own, there.", 0.0, 1.0);
+    v.field("sigma_deg", sigma_deg, "deg", "The same of their heading.", 0.0, 5.0);
+    v.group("search", search);
+  }
+};
+
 struct FusedMapperOptions {
   OdometryNoiseOptions odometry;
   SubmapOptions submaps;
@@ -78,6 +105,7 @@ struct FusedMapperOptions {
   LoopOptions loop;
   CompassOptions compass;
   RowCompassOptions rows;
+  SavedMapOptions saved_map;
   LocalMapOptions local_map;
   GlobalMapOptions global_map;
   SlotRegistryOptions slots;
@@ -90,6 +118,7 @@ struct FusedMapperOptions {
     v.group("loop", loop);
     v.group("compass", compass);
     v.group("rows", rows);
+    v.group("saved_map", saved_map);
     v.group("local_map", local_map);
     v.group("global_map", global_map);
     v.group("slots", slots);
@@ -103,6 +132,8 @@ struct FusedMapperStatistics {
   int revisits = 0;  ///< tried on submaps of an earlier one
   int loops = 0;     ///< of them, accepted
   int refused_by_gate = 0;
+  int map_registrations = 0;  ///< to a saved map, tried since the car was found in it
+  int map_accepted = 0;
   int headings = 0;  ///< read off the garage's axes, and taken
   int anchors = 0;
 };
@@ -117,6 +148,7 @@ class FusedMapper final : public SemanticMapper {
   FusedMapper(const FusedMapperOptions& options, std::vector<Eigen::Vector3d> viewpoints);
   ~FusedMapper() override;
 
+  Status locateIn(const ParkingMap& map) override;
   PoseEstimate addOdometry(const PoseEstimate& odometry) override;
   void holdView() override;
   void dropView() override;

@@ -13,7 +13,7 @@
 #include "parkade/pipeline/fused_mapper.hpp"
 
 // Inside of the fusing mapper: fused_mapper.cpp holds the flow and the map, fused_registration.cpp
-// what corrects the pose.
+// what corrects the pose, fused_relocalisation.cpp what finds the car in a saved map.
 
 namespace parkade {
 
@@ -38,6 +38,15 @@ class FusedMapper::Impl {
     double travelled = 0.0;
     double turned = 0.0;
     std::size_t at = 0;  // pose of the history
+  };
+
+  /// A saved map that the car is to be found in, and then held to.
+  struct Saved {
+    explicit Saved(const ParkingMap& file) : map(file) {}
+    SavedMap map;
+    std::int64_t place = -1;  // of its origin, in the filter, once the car is found
+    double last_search = -1e9;
+    std::optional<SE2> T_map_world;  // by the last search that told one
   };
 
   Impl(const FusedMapperOptions& o, std::vector<Eigen::Vector3d> cameras)
@@ -65,7 +74,20 @@ class FusedMapper::Impl {
   void turnTo(double heading, double sigma, const View& view);
   void registerFrameToSubmaps(const SemanticFrame& frame, const View& view);
   void tryStretch(const SemanticFrame& frame, const View& view, std::size_t index, bool revisit);
+  /// Lays a frame on a submap where it is expected, or, where that is known too badly and
+  /// may_search, searches around it.
+  [[nodiscard]] Registration registerAround(const SemanticFrame& frame, const Submap& submap,
+                                            const SE2& expected, const Eigen::Matrix4d& covariance,
+                                            bool may_search) const;
   void addLoopEdge(const Stretch& stretch, const Registration& fit, const View& view);
+
+  void locate(const SemanticFrame& frame, const View& view);
+  void searchSavedMap(const View& view);
+  void settleInSavedMap(const Registration& fit, const View& view);
+  void registerToSavedMap(const SemanticFrame& frame, const View& view);
+  [[nodiscard]] Surroundings surroundings(const View& view) const;
+  void rebase(const SE2& T_new_world, double dz);
+  [[nodiscard]] bool located() const { return saved && saved->place >= 0; }
 
   Stretch& open() { return stretches.back(); }
   [[nodiscard]] SE2 poseOf(const View& view) const {
@@ -90,6 +112,7 @@ class FusedMapper::Impl {
   double axes_rig_turn = 0.0;  // and of the cameras
   double rig_turn = 0.0;       // of the newest frame
   PoseFilter filter;
+  std::optional<Saved> saved;
   std::optional<PoseEstimate> odometry;  // newest
   std::optional<PoseEstimate> tracked;   // newest with a pose: odometry may start again
   AnchoredHistory history;

@@ -7,22 +7,10 @@
 #include "parkade/core/log.hpp"
 #include "parkade/core/units.hpp"
 #include "parkade/pipeline/fused_mapper_impl.hpp"
+#include "parkade/pipeline/shared_noise.hpp"
 
 namespace parkade {
 namespace {
-
-// Adds a covariance that all measurements with this one share: only in its observable directions.
-Eigen::Matrix3d withSharedNoise(const Eigen::Matrix3d& information, const Eigen::Matrix3d& shared) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information);
-  Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
-  constexpr double kLeast = 1e-6;
-  for (int k = 0; k < 3; ++k) {
-    if (eigen.eigenvalues()[k] <= kLeast) continue;
-    const Eigen::Vector3d u = eigen.eigenvectors().col(k);
-    result += u * u.transpose() / (1.0 / eigen.eigenvalues()[k] + u.dot(shared * u));
-  }
-  return result;
-}
 
 double largestSigma(const Eigen::Matrix2d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(covariance, Eigen::EigenvaluesOnly);
@@ -60,6 +48,30 @@ void FusedMapper::Impl::addLoopEdge(const Stretch& stretch, const Registration& 
   edges.push_back(edge);
 }
 
+Registration FusedMapper::Impl::registerAround(const SemanticFrame& frame, const Submap& submap,
+                                               const SE2& expected,
+                                               const Eigen::Matrix4d& covariance,
+                                               bool may_search) const {
+  const double sigma = largestSigma(covariance.topLeftCorner<2, 2>());
+  // Half of the narrowest slot is the distance at which rows look alike.
+  constexpr double kCertain = 0.25;
+  if (sigma < kCertain) {
+    return registerFrame(frame, submap, expected, options.registration, viewpoints);
+  }
+  Registration fit;
+  if (may_search) {
+    const LoopResult loop =
+        searchInSubmap(frame, submap, expected, sigma, std::sqrt(covariance(2, 2)), options.loop,
+                       options.registration, viewpoints);
+    fit = loop.registration;
+    fit.accepted = loop.accepted;
+    fit.reason = loop.reason;
+  } else {
+    fit.reason = "the pose is too uncertain";
+  }
+  return fit;
+}
+
 void FusedMapper::Impl::tryStretch(const SemanticFrame& frame, const View& view, std::size_t index,
                                    bool revisit) {
   const Stretch& stretch = stretches[index];
@@ -73,21 +85,7 @@ void FusedMapper::Impl::tryStretch(const SemanticFrame& frame, const View& view,
   // fails.
   if (!revisit && sigma < options.submaps.passage_sigma_m) return;
   ++(revisit ? statistics.revisits : statistics.registrations);
-  Registration fit;
-  // Half of the narrowest slot is the distance at which rows look alike.
-  constexpr double kCertain = 0.25;
-  if (sigma < kCertain) {
-    fit = registerFrame(frame, stretch.submap, expected, options.registration, viewpoints);
-  } else if (revisit) {
-    const LoopResult loop =
-        searchInSubmap(frame, stretch.submap, expected, sigma, std::sqrt(P(2, 2)), options.loop,
-                       options.registration, viewpoints);
-    fit = loop.registration;
-    fit.accepted = loop.accepted;
-    fit.reason = loop.reason;
-  } else {
-    fit.reason = "the pose is too uncertain";
-  }
+  Registration fit = registerAround(frame, stretch.submap, expected, P, revisit);
   if (!fit.accepted) {
     logDebug("registration to stretch {}: {}", stretch.anchor, fit.reason);
     return;
@@ -100,11 +98,9 @@ void FusedMapper::Impl::tryStretch(const SemanticFrame& frame, const View& view,
   constexpr double kShared = 0.5;
   const double uses = std::max(1.0, kShared * (options.submaps.length_m + 5.0) /
                                         std::max(0.1, options.submaps.register_distance_m));
-  const double place = far * options.submaps.sigma_m;
-  const double turn = far * options.submaps.sigma_deg * kDegree;
-  Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
-  shared.diagonal() << place * place, place * place, turn * turn;
-  const Eigen::Matrix3d information = withSharedNoise(fit.information, uses * shared);
+  const Eigen::Matrix3d information = withSharedNoise(
+      fit.information,
+      uses * sharedNoise(far * options.submaps.sigma_m, far * options.submaps.sigma_deg));
   const FilterUpdate update = filter.updateBetween(stretch.anchor, view.anchor, fit.T_map_vehicle,
                                                    information, options.submaps.gate_probability);
   if (!update.accepted) {

@@ -82,6 +82,7 @@ class MappingRun::Impl {
   std::unique_ptr<SemanticMapper> mapper;
   std::unique_ptr<SemanticQueue> semantics;  // where there is a mapper
   std::unique_ptr<DeadReckoning> reckoning;  // instead of key points
+  bool in_saved_map = false;
 
  private:
   // The estimator's part of one frame set; runs beside the tracking of the next.
@@ -205,10 +206,14 @@ void MappingRun::Impl::estimate(Estimation& work) {
     fused = mapper->estimate();
   }
   if (estimate.health != Health::kInitialising) {
-    rig_error_.advance(estimate.T_odom_vehicle, fused.T_odom_vehicle, estimator_.rigSigma());
-    rig_error_.addTo(fused);
+    if (!in_saved_map) {  // which tells the place, whatever the way to it
+      rig_error_.advance(estimate.T_odom_vehicle, fused.T_odom_vehicle, estimator_.rigSigma());
+      rig_error_.addTo(fused);
+    }
     odometry.push_back({estimate.t_ns, estimate.T_odom_vehicle});
-    trajectory.push_back({fused.t_ns, fused.T_odom_vehicle});
+    if (fused.health != Health::kInitialising) {
+      trajectory.push_back({fused.t_ns, fused.T_odom_vehicle});
+    }
   }
   work.end = Clock::now();
   for (PipelineObserver* observer : observers) {
@@ -363,6 +368,12 @@ Result<std::unique_ptr<MappingRun>> MappingRun::create(const Rig& rig,
       std::move(front_end).value(), *impl->mapper, impl->observers,
       SemanticQueueOptions{options.semantics_delay, options.live, threads > 1});
   return std::unique_ptr<MappingRun>(new MappingRun(std::move(impl)));
+}
+
+Status MappingRun::locateIn(const ParkingMap& map) {
+  if (impl_->mapper == nullptr) return Error{"key points alone cannot find the car in a saved map"};
+  impl_->in_saved_map = true;
+  return impl_->mapper->locateIn(map);
 }
 
 void MappingRun::addObserver(PipelineObserver* observer) {

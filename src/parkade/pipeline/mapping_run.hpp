@@ -134,6 +134,10 @@ class MappingRun {
                                                     RunMethod method = RunMethod::kVis);
   ~MappingRun();
 
+  /// Before run(): the world is to be that of a saved map, in which the car has to be found.
+  /// trajectory() begins there; until then poses have the health kInitialising. Fails with methods
+  /// that cannot.
+  Status locateIn(const ParkingMap& map);
   /// Not owned; must live as long as run() does.
   void addObserver(PipelineObserver* observer);
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "parkade/core/result.hpp"
 #include "parkade/mapping/local_map.hpp"
 #include "parkade/mapping/parking_map.hpp"
 #include "parkade/types/level_view.hpp"
@@ -20,6 +21,11 @@ class SemanticMapper {
  public:
   virtual ~SemanticMapper() = default;
 
+  /// Before all else: the world is to be that of a saved map, where the car has to be found first.
+  /// Until then poses have the health kInitialising. Fails where the method cannot.
+  virtual Status locateIn(const ParkingMap& /*map*/) {
+    return Error{"this method cannot find the car in a saved map"};
+  }
   /// The odometry's pose of a frame set. Gives the corrected pose, T_world_vehicle in its place of
   /// T_odom_vehicle; the odometry's own while that has not started.
   virtual PoseEstimate addOdometry(const PoseEstimate& odometry) = 0;

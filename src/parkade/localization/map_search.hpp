@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "parkade/core/options.hpp"
+#include "parkade/localization/place_decision.hpp"
+#include "parkade/mapping/parking_map.hpp"
+
+namespace parkade {
+
+struct MapSearchOptions {
+  int refined = 16;
+  double ambiguity = 0.75;
+  double least_fit = 0.4;
+  double wrong_texts = 0.25;
+  double coarse_radius_m = 0.25;
+  int line_points = 500;
+
+  void visit(OptionVisitor& v) {
+    v.field("refined", refined, "count", "Best places of the whole map that are registered.", 1,
+            1000);
+    v.field("ambiguity", ambiguity, "ratio",
+            "Another place that fits this well, compared with the best, leaves it open where the "
+            "car is.",
+            0.1, 1.0);
+    v.field("least_fit", least_fit, "ratio",
+            "Share of what was seen lately that has to be found in the map at the place told.",
+            0.05, 1.0);
+    v.field("wrong_texts", wrong_texts, "ratio",
+            "Of the texts that stand where the map has one, so many may differ: some are misread.",
+            0.0, 1.0);
+    v.field("coarse_radius_m", coarse_radius_m, "m",
+            "A line point counts for a place when its line is this near.", 0.05, 1.0);
+    v.field("line_points", line_points, "count", "Of what was seen lately, spread evenly.", 50,
+            100000);
+  }
+};
+
+/// A saved map as a later drive finds itself in it.
+struct SavedMap {
+  explicit SavedMap(const ParkingMap& map);
+  Submap landmarks;
+  std::vector<SE2> slots;            ///< x into the slot, origin at the middle of its entrance
+  std::vector<SE2> arrows;           ///< x ahead
+  std::vector<Eigen::Vector3d> way;  ///< where the car was that made it
+  /// How high the car stood that came nearest to a place; 0 where the map has no way.
+  [[nodiscard]] double heightAt(const Eigen::Vector2d& p) const;
+};
+
+/// The car's surroundings of some tens of metres, gathered along its way: the vehicle frame.
+struct Surroundings {
+  SemanticFrame features;
+  std::vector<SE2> slots;
+  std::vector<SE2> arrows;
+};
+
+/// Where a slot lies: x into it, origin at the middle of its entrance.
+SE2 slotFrame(const std::array<Eigen::Vector2d, 4>& corners);
+
+/// Finds the car anywhere in a saved map, with no idea of where it is: each slot and arrow seen may
+/// be any of the map's; such places are scored by all lines and landmarks, the best registered.
+/// Rows of slots look alike: the place is told only where no other one fits as well.
+/// docs/math/registration.md.
+LoopResult findInMap(const Surroundings& surroundings, const SavedMap& map,
+                     const MapSearchOptions& options, const RegistrationOptions& registration);
+
+}  // namespace parkade

@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/localization/place_decision.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace parkade {
+namespace {
+
+// Of the frame's texts that stand where the submap has a marker of that class, those that differ.
+struct Texts {
+  int compared = 0;
+  int wrong = 0;
+  [[nodiscard]] bool contradict(const PlaceRules& rules) const {
+    return wrong > rules.wrong_texts * compared;
+  }
+};
+Texts compareTexts(const SemanticFrame& frame, const Submap& submap, const SE2& T) {
+  Texts texts;
+  for (const ObjectObservation& object : frame.objects) {
+    if (object.text.empty() || !isPointLandmark(object.semantic_class)) continue;
+    const Eigen::Vector2d q = T * object.position.head<2>();
+    constexpr double kThere = 0.5;  // m
+    if (submap.nearestPoint(q, object.semantic_class, "", kThere) == nullptr) continue;
+    ++texts.compared;
+    if (submap.nearestPoint(q, object.semantic_class, object.text, kThere) == nullptr) {
+      ++texts.wrong;
+    }
+  }
+  return texts;
+}
+
+}  // namespace
+
+double PlaceScorer::at(const SE2& T) const {
+  const Eigen::Matrix2d R = T.rotationMatrix();
+  double fits = 0.0;
+  double all = 0.0;
+  for (std::size_t i = 0; i < frame_.line_points.size(); i += stride_) {
+    const LinePoint& point = frame_.line_points[i];
+    const Eigen::Vector2d q = T * point.p_level;
+    if (!inside(q)) continue;
+    all += 1.0;
+    const LineFeature* match =
+        submap_.lines().nearest(q, R * point.normal, point.semantic_class, 2.0 * radius_);
+    if (match != nullptr && std::abs(match->normal.dot(q - match->p)) < radius_) fits += 1.0;
+  }
+  const double lines = all;
+  const double weight = 0.12 * std::max(10.0, lines);
+  for (const ObjectObservation& object : frame_.objects) {
+    if (!isPointLandmark(object.semantic_class)) continue;
+    const Eigen::Vector2d q = T * object.position.head<2>();
+    if (!inside(q)) continue;
+    all += weight;
+    if (submap_.nearestPoint(q, object.semantic_class, object.text, 0.5) != nullptr) {
+      fits += weight;
+    }
+  }
+  // The share that fits, and little where little lies inside.
+  const double seen = static_cast<double>(frame_.line_points.size()) / static_cast<double>(stride_);
+  constexpr double kEnough = 0.4;
+  if (all <= 0.0 || seen <= 0.0) return 0.0;
+  return fits / all * std::min(1.0, lines / (kEnough * seen));
+}
+
+bool PlaceScorer::inside(const Eigen::Vector2d& q) const {
+  constexpr double kMargin = 0.2;
+  return (q - submap_.low()).minCoeff() > -kMargin && (submap_.high() - q).minCoeff() > -kMargin;
+}
+
+bool samePlace(const SE2& a, const SE2& b, double distance) {
+  constexpr double kAngle = 0.06;
+  return (a.translation() - b.translation()).norm() < distance &&
+         std::abs(wrapAngle(a.angle() - b.angle())) < kAngle;
+}
+
+LoopResult decidePlace(const SemanticFrame& frame, const Submap& submap,
+                       std::vector<PlaceCandidate> candidates, const PlaceRules& rules,
+                       const LoopOptions& loop, const RegistrationOptions& registration,
+                       const std::vector<Eigen::Vector3d>& viewpoints) {
+  LoopResult result;
+  std::stable_sort(
+      candidates.begin(), candidates.end(),
+      [](const PlaceCandidate& a, const PlaceCandidate& b) { return a.score > b.score; });
+  // Refine the best of each place, and compare what they end as.
+  const PlaceScorer fine(frame, submap, 0.08, 1);
+  std::vector<SE2> tried;
+  std::vector<PlaceCandidate> ends;
+  for (const PlaceCandidate& c : candidates) {
+    if (static_cast<int>(tried.size()) >= loop.refined) break;
+    const bool near = std::any_of(tried.begin(), tried.end(), [&](const SE2& other) {
+      return samePlace(c.T_map_vehicle, other, rules.spacing_m);
+    });
+    if (near) continue;
+    tried.push_back(c.T_map_vehicle);
+    const Registration fit =
+        registerFrame(frame, submap, c.T_map_vehicle, registration, viewpoints);
+    if (fit.line_matches < registration.min_matches / 2) continue;
+    if (rules.texts_exclude && compareTexts(frame, submap, fit.T_map_vehicle).contradict(rules)) {
+      continue;
+    }
+    const double score = fine.at(fit.T_map_vehicle);
+    ends.push_back({fit.T_map_vehicle, score});
+    if (fit.accepted && score > result.score) {
+      result.score = score;
+      result.registration = fit;
+    }
+  }
+  if (result.score <= 0.0) {
+    result.reason = "nothing fits";
+    return result;
+  }
+  for (const PlaceCandidate& end : ends) {
+    if (samePlace(end.T_map_vehicle, result.registration.T_map_vehicle, 0.4)) continue;
+    result.second = std::max(result.second, end.score);
+  }
+  const Texts texts = compareTexts(frame, submap, result.registration.T_map_vehicle);
+  if (texts.contradict(rules)) {
+    result.reason = texts.compared == 1 ? "a marker there has another text"
+                                        : fmt::format("{} of {} markers there have another text",
+                                                      texts.wrong, texts.compared);
+  } else if (result.score < loop.least_fit) {
+    result.reason = fmt::format("{:.0f} % fit", 100.0 * result.score);
+  } else if (result.second > loop.ambiguity * result.score) {
+    result.reason = fmt::format("ambiguous: {:.0f} % fit, and {:.0f} % at another place",
+                                100.0 * result.score, 100.0 * result.second);
+  } else if (result.registration.observable < 3) {
+    result.reason = "a direction is not observable";
+  }
+  result.accepted = result.reason.empty();
+  return result;
+}
+
+}  // namespace parkade

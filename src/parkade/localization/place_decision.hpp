@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "parkade/core/options.hpp"
+#include "parkade/localization/registration.hpp"
+
+namespace parkade {
+
+struct LoopOptions {
+  double max_search_m = 4.0;
+  double step_m = 0.5;
+  double step_deg = 2.0;
+  double coarse_radius_m = 0.25;
+  int refined = 12;
+  double ambiguity = 0.8;
+  double least_fit = 0.5;
+
+  void visit(OptionVisitor& v) {
+    v.field(
+        "max_search_m", max_search_m, "m",
+        "Places farther from the expected one are not tried; a less certain pose closes no loop.",
+        0.5, 20.0);
+    v.field("step_m", step_m, "m", "Spacing of the places tried.", 0.1, 2.0);
+    v.field("step_deg", step_deg, "deg", "Spacing of the headings tried.", 0.1, 10.0);
+    v.field("coarse_radius_m", coarse_radius_m, "m",
+            "A line point counts for a place when its line is this near.", 0.05, 1.0);
+    v.field("refined", refined, "count", "Best places that are registered.", 1, 100);
+    v.field("ambiguity", ambiguity, "ratio",
+            "Another place that fits this well, compared with the best, makes the loop ambiguous.",
+            0.1, 1.0);
+    v.field("least_fit", least_fit, "ratio",
+            "Share of what is seen that has to be found in the map at the place told.", 0.05, 1.0);
+  }
+};
+
+/// What a search for the car in a map found.
+struct LoopResult {
+  bool accepted = false;
+  std::string reason;         ///< why not, in words
+  Registration registration;  ///< the best one
+  double score = 0.0;         ///< of the best: share of the frame's features that fit
+  double second = 0.0;        ///< of the best at another place
+};
+
+/// How much of a frame fits a submap at a pose: line points in metres' worth, and point landmarks,
+/// each of which is as telling as several metres of line. Landmarks in the submap's area that are
+/// not where they should be speak against the pose.
+class PlaceScorer {
+ public:
+  /// radius: m, in which a line point finds its line; stride: takes every so many of them.
+  PlaceScorer(const SemanticFrame& frame, const Submap& submap, double radius, std::size_t stride)
+      : frame_(frame), submap_(submap), radius_(radius), stride_(stride) {}
+
+  /// Share that fits, 0 to 1; little where little lies inside the submap.
+  [[nodiscard]] double at(const SE2& T_map_vehicle) const;
+
+ private:
+  [[nodiscard]] bool inside(const Eigen::Vector2d& q) const;
+  const SemanticFrame& frame_;
+  const Submap& submap_;
+  double radius_;
+  std::size_t stride_;
+};
+
+/// A pose that a frame may have in a submap, and how well it fits there.
+struct PlaceCandidate {
+  SE2 T_map_vehicle;
+  double score = 0.0;
+};
+
+/// The poses are the same place: to within a distance (m) and 3.4 degrees.
+bool samePlace(const SE2& a, const SE2& b, double distance);
+
+/// What makes two candidates one place, and what markers' texts say of one.
+struct PlaceRules {
+  double spacing_m = 0.5;      ///< nearer candidates are one place
+  double wrong_texts = 0.0;    ///< a place is refused where more of its texts are other ones
+  bool texts_exclude = false;  ///< such places are no rivals either
+};
+
+/// Registers the best candidates of each place and takes the one that fits best; refuses it where
+/// another place fits as well, or where markers bear other texts.
+LoopResult decidePlace(const SemanticFrame& frame, const Submap& submap,
+                       std::vector<PlaceCandidate> candidates, const PlaceRules& rules,
+                       const LoopOptions& loop, const RegistrationOptions& registration,
+                       const std::vector<Eigen::Vector3d>& viewpoints = {});
+
+}  // namespace parkade

@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "parkade/core/log.hpp"
+#include "parkade/core/units.hpp"
+#include "parkade/pipeline/fused_mapper_impl.hpp"
+#include "parkade/pipeline/shared_noise.hpp"
+
+namespace parkade {
+namespace {
+
+// Enters what one stretch's submap holds in another, which lies at T_all_submap.
+void gather(const Submap& submap, const SE2& T_all_submap, Submap& all) {
+  const Eigen::Matrix2d R = T_all_submap.rotationMatrix();
+  for (const LineFeature& line : submap.lines().features()) {
+    constexpr int kTwice = 2;  // what one picture alone shows may be anything
+    if (line.count < kTwice) continue;
+    LinePoint point;
+    point.p_level = T_all_submap * line.p;
+    point.normal = R * line.normal;
+    point.sigma = 1.0 / std::sqrt(line.weight);
+    point.semantic_class = line.semantic_class;
+    all.addLine(point);
+  }
+  for (PointFeature landmark : submap.points()) {
+    landmark.p = T_all_submap * landmark.p;
+    landmark.covariance = (R * landmark.covariance * R.transpose()).eval();
+    all.addPoint(landmark);
+  }
+}
+
+// The same as if one picture had shown it.
+SemanticFrame asFrame(const Submap& all) {
+  // Tens of metres of way and another drive's map lie between a line and its like.
+  constexpr double kLeastSigma = 0.03;  // m
+  SemanticFrame frame;
+  for (const LineFeature& line : all.lines().features()) {
+    frame.line_points.push_back({line.p, line.normal,
+                                 std::max(kLeastSigma, 1.0 / std::sqrt(line.weight)),
+                                 line.semantic_class});
+  }
+  for (const PointFeature& landmark : all.points()) {
+    if (!isPointLandmark(landmark.semantic_class)) continue;
+    ObjectObservation object;
+    object.semantic_class = landmark.semantic_class;
+    object.position.head<2>() = landmark.p;
+    object.covariance.topLeftCorner<2, 2>() = landmark.covariance;
+    object.text = landmark.text;
+    object.confidence = 1.0;
+    frame.objects.push_back(object);
+  }
+  return frame;
+}
+
+}  // namespace
+
+Surroundings FusedMapper::Impl::surroundings(const View& view) const {
+  Surroundings result;
+  Submap all;
+  const SE2 T_vehicle_world = poseOf(view).inverse();
+  std::vector<Eigen::Vector2d> middles;
+  for (const Stretch& s : stretches) {
+    const bool is_open = &s == &stretches.back();
+    if (!is_open && view.travelled - s.end_m > options.saved_map.gathered_m) continue;
+    if (s.submap.frames() == 0) continue;
+    gather(s.submap, T_vehicle_world * placeOf(s), all);
+    middles.push_back(placeOf(s) * s.submap.middle());
+  }
+  result.features = asFrame(all);
+  const auto isNear = [&](const Eigen::Vector2d& p) {
+    constexpr double kReach = 10.0;  // m, about as far as a picture shows
+    return std::any_of(middles.begin(), middles.end(),
+                       [&](const Eigen::Vector2d& q) { return (p - q).norm() < kReach; });
+  };
+  const std::vector<MapObject> things = objects.objects();
+  for (const MapSlot& slot : slots.slots(last_t_ns, things)) {
+    if (isNear(slot.entrance())) result.slots.push_back(T_vehicle_world * slotFrame(slot.corners));
+  }
+  for (const MapObject& object : things) {
+    if (object.semantic_class != SemanticClass::kArrow || !isNear(object.position.head<2>())) {
+      continue;
+    }
+    result.arrows.push_back(T_vehicle_world * SE2(object.heading, object.position.head<2>()));
+  }
+  return result;
+}
+
+void FusedMapper::Impl::locate(const SemanticFrame& frame, const View& view) {
+  if (located()) {
+    registerToSavedMap(frame, view);
+    return;
+  }
+  if (view.travelled < options.saved_map.least_m ||
+      view.travelled - saved->last_search < options.saved_map.every_m) {
+    return;
+  }
+  saved->last_search = view.travelled;
+  searchSavedMap(view);
+}
+
+void FusedMapper::Impl::searchSavedMap(const View& view) {
+  const SavedMapOptions& o = options.saved_map;
+  const LoopResult found =
+      findInMap(surroundings(view), saved->map, o.search, options.registration);
+  if (!found.accepted) {
+    logDebug("saved map, after {:.0f} m: {}", view.travelled, found.reason);
+    return;
+  }
+  const SE2& T_map_vehicle = found.registration.T_map_vehicle;
+  const SE2 T_map_world = T_map_vehicle * poseOf(view).inverse();
+  // A second search, on what is partly new, has to say the same.
+  const std::optional<SE2> before = std::exchange(saved->T_map_world, T_map_world);
+  if (!before) return;
+  const SE2 off = T_map_vehicle.inverse() * *before * poseOf(view);
+  if (off.translation().norm() > o.agree_m || std::abs(off.angle()) > o.agree_deg * kDegree) return;
+  settleInSavedMap(found.registration, view);
+}
+
+void FusedMapper::Impl::rebase(const SE2& T_new_world, double dz) {
+  filter.rebase(T_new_world, dz);
+  for (Stretch& s : stretches) {
+    s.pose.T_world_vehicle = T_new_world * s.pose.T_world_vehicle;
+    s.pose.z += dz;
+  }
+  objects.raise(dz);
+  compass.turnWorld(T_new_world.angle());
+}
+
+void FusedMapper::Impl::settleInSavedMap(const Registration& fit, const View& view) {
+  const double z = saved->map.heightAt(fit.T_map_vehicle.translation());
+  rebase(fit.T_map_vehicle * poseOf(view).inverse(), z - filter.anchor(view.anchor).z);
+  // What it is known to beforehand: nothing, beside what the registration tells.
+  constexpr double kAnywhere = 100.0;  // m, and rad
+  saved->place = filter.addPlace({}, kAnywhere * Eigen::Matrix4d::Identity());
+  const SavedMapOptions& o = options.saved_map;
+  filter.updateBetween(saved->place, view.anchor, fit.T_map_vehicle,
+                       withSharedNoise(fit.information, sharedNoise(o.sigma_m, o.sigma_deg)),
+                       options.submaps.gate_probability);
+  corrected = true;
+  logInfo("found in the saved map after {:.0f} m", view.travelled);
+}
+
+void FusedMapper::Impl::registerToSavedMap(const SemanticFrame& frame, const View& view) {
+  ++statistics.map_registrations;
+  const Registration fit =
+      registerAround(frame, saved->map.landmarks, between(saved->place, view),
+                     filter.relativeCovariance(saved->place, view.anchor), true);
+  if (!fit.accepted) {
+    logDebug("registration to the saved map: {}", fit.reason);
+    return;
+  }
+  // The map's own errors stay the same over metres, whatever number of frames measure them.
+  constexpr double kAlike = 10.0;  // m
+  const double uses = std::max(1.0, kAlike / std::max(0.1, options.submaps.register_distance_m));
+  const SavedMapOptions& o = options.saved_map;
+  const Eigen::Matrix3d information =
+      withSharedNoise(fit.information, uses * sharedNoise(o.sigma_m, o.sigma_deg));
+  const FilterUpdate update = filter.updateBetween(saved->place, view.anchor, fit.T_map_vehicle,
+                                                   information, options.submaps.gate_probability);
+  if (!update.accepted) {
+    ++statistics.refused_by_gate;
+    return;
+  }
+  corrected = true;
+  ++statistics.map_accepted;
+}
+
+}  // namespace parkade

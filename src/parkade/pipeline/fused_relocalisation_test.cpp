@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "parkade/mapping/map_check.hpp"
+#include "parkade/mapping/synthetic_plan.hpp"
+#include "parkade/pipeline/fused_mapper.hpp"
+
+namespace parkade {
+namespace {
+
+using testing::makePlan;
+using testing::ObserverNoise;
+using testing::Plan;
+using testing::PlanObserver;
+
+ObserverNoise usualNoise() {
+  ObserverNoise noise;
+  noise.line_sigma = 0.015;
+  noise.corner_sigma = 0.03;
+  noise.object_sigma = 0.05;
+  noise.attitude_sigma = 0.002;
+  noise.dropout = 0.2;
+  return noise;
+}
+
+struct Localised {
+  int poses = 0;          // with a place in the map
+  double found_m = -1.0;  // way to the first of them
+  double worst = 0.0;     // of them, m
+  double worst_yaw = 0.0;
+  double nees = 0.0;  // mean, place in the plane
+  ParkingMap map;
+  Trajectory final_poses;
+};
+
+// Drives through a plan with an odometry that drifts, in a map of it that lies at T_map_plan.
+Localised drive(const Plan& plan, const ParkingMap& saved, const SE2& T_map_plan, double length) {
+  const PlanObserver observer(plan, usualNoise());
+  FusedMapperOptions options;
+  options.odometry.translation = 0.008;
+  options.odometry.yaw_deg = 0.02;
+  FusedMapper mapper(options, {});
+  EXPECT_TRUE(mapper.locateIn(saved).ok());
+  Random random(8);
+  constexpr double kStep = 0.25;
+  SE2 odometry;
+  const std::vector<SE2> poses = testing::blockDrive(60.0, 1, kStep);
+  Localised result;
+  double way = 0.0;
+  for (std::size_t k = 0; k < poses.size() && way < length; ++k) {
+    if (k > 0) {
+      const Eigen::Vector3d d = (poses[k - 1].inverse() * poses[k]).log();
+      odometry = odometry * SE2::exp({1.002 * d.x() + 0.001 * random.normal(), d.y(),
+                                      d.z() + 2e-5 + 1e-4 * random.normal()});
+      way += kStep;
+    }
+    PoseEstimate vio;
+    vio.t_ns = 100'000'000LL * static_cast<TimeNs>(k + 1);
+    vio.T_odom_vehicle = odometry.toSE3();
+    vio.health = Health::kTracking;
+    mapper.addOdometry(vio);
+    const PoseEstimate fused =
+        mapper.addSemantics(observer.observe(vio.t_ns, poses[k], random, false), {});
+    if (fused.health == Health::kInitialising) continue;
+    if (result.poses++ == 0) result.found_m = way;
+    const SE2 off = SE2::fromSE3(fused.T_odom_vehicle).inverse() * T_map_plan * poses[k];
+    result.worst = std::max(result.worst, off.translation().norm());
+    result.worst_yaw = std::max(result.worst_yaw, std::abs(off.angle()));
+    const Eigen::Matrix2d P = fused.covariance.topLeftCorner<2, 2>();
+    result.nees += off.translation().dot(P.inverse() * off.translation());
+  }
+  result.nees /= std::max(1, result.poses);
+  mapper.finish();
+  result.map = mapper.map("later");
+  result.final_poses = mapper.finalTrajectory();
+  return result;
+}
+
+TEST(FusedRelocalisation, FindsItselfInASavedMapAndStaysThere) {
+  const Plan plan = makePlan(2, 60.0, 0.4, 12);
+  const SE2 T_map_plan(0.7, {-20.0, 11.0});
+  const Localised later = drive(plan, testing::mapOf(plan, T_map_plan), T_map_plan, 90.0);
+  std::printf("found after %.1f m; worst %.3f m, %.2f deg; NEES %.2f\n", later.found_m, later.worst,
+              later.worst_yaw * 180.0 / M_PI, later.nees);
+  EXPECT_GT(later.found_m, 0.0);
+  EXPECT_LT(later.found_m, 30.0);
+  EXPECT_LT(later.worst, 0.08);
+  EXPECT_LT(later.worst_yaw, 0.01);
+  EXPECT_LT(later.nees, 6.0);
+  // Its own map and all of its poses, those before it was found as well, are in that map's world.
+  EXPECT_THAT(findFaults(later.map), ::testing::IsEmpty());
+  ASSERT_GT(later.map.slots.size(), 10U);
+  for (const MapSlot& slot : later.map.slots) {
+    double nearest = 1e9;
+    for (const testing::PlanSlot& there : plan.slots) {
+      const Eigen::Vector2d entrance = T_map_plan * (0.5 * (there.corners[0] + there.corners[1]));
+      nearest = std::min(nearest, (slot.entrance() - entrance).norm());
+    }
+    EXPECT_LT(nearest, 0.08);
+  }
+  const SE2 start = T_map_plan * testing::blockDrive(60.0, 1, 0.25).front();
+  const SE2 first = SE2::fromSE3(later.final_poses.front().T_world_body);
+  EXPECT_LT((first.translation() - start.translation()).norm(), 0.08);
+}
+
+TEST(FusedRelocalisation, AnotherGarageIsNeverTakenForTheMap) {
+  Plan other = makePlan(2, 60.0, 0.4, 13);
+  for (testing::PlanObject& object : other.objects) {
+    if (object.semantic_class == SemanticClass::kZoneMarker) object.text = "Z" + object.text;
+  }
+  const Localised later = drive(other, testing::mapOf(makePlan(2, 60.0, 0.4, 12)), {}, 60.0);
+  EXPECT_EQ(later.poses, 0);
+  EXPECT_FALSE(later.final_poses.empty());  // of its own world
+}
+
+}  // namespace
+}  // namespace parkade
