@@ -141,15 +141,18 @@ void PlanObserver::rasterise() {
                  static_cast<std::uint8_t>(SemanticClass::kFloor));
   const auto paint = [&](const Vector2d& center, double heading, const Vector2d& box,
                          SemanticClass c) {
-    const double reach = 0.5 * box.norm() + cell_;
-    const Vector2d low = (center - plan_.min - Vector2d::Constant(reach)) / cell_;
-    const Vector2d high = (center - plan_.min + Vector2d::Constant(reach)) / cell_;
+    const SE2 T_plan_box(heading, center);
+    const SE2 T_box_plan = T_plan_box.inverse();
+    const Vector2d reach = 0.5 * T_plan_box.rotationMatrix().cwiseAbs() * box;
+    const Vector2d low = (center - reach - plan_.min) / cell_ - Vector2d::Ones();
+    const Vector2d high = (center + reach - plan_.min) / cell_ + Vector2d::Ones();
     for (int y = std::max(0, static_cast<int>(low.y()));
          y < std::min(height, static_cast<int>(high.y()) + 1); ++y) {
       for (int x = std::max(0, static_cast<int>(low.x()));
            x < std::min(width_, static_cast<int>(high.x()) + 1); ++x) {
         const Vector2d p = plan_.min + cell_ * Vector2d(x + 0.5, y + 0.5);
-        if (!insideBox(p, center, heading, box)) continue;
+        const Vector2d q = T_box_plan * p;
+        if (std::abs(q.x()) > 0.5 * box.x() || std::abs(q.y()) > 0.5 * box.y()) continue;
         raster_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
                 static_cast<std::size_t>(x)] = static_cast<std::uint8_t>(c);
       }

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "parkade/core/check.hpp"
+#include "parkade/pipeline/frame_packets.hpp"
 #include "parkade/pipeline/semantic_queue.hpp"
 #include "parkade/pipeline/thread_pool.hpp"
 #include "parkade/tracking/overlap.hpp"
@@ -21,38 +22,6 @@ namespace parkade {
 namespace {
 
 using Clock = BusyTime::Clock;
-
-// The turn of the vehicle between two instants by the gyroscope alone, its bias unknown: what can
-// be said before the estimator has started.
-MotionPrior turnBetween(const std::vector<ImuSample>& readings, const SE3& T_vehicle_imu,
-                        TimeNs begin_ns, TimeNs end_ns) {
-  MotionPrior prior;
-  prior.previous_t_ns = begin_ns;
-  if (readings.size() < 2) return prior;
-  SO3 R_begin_now;
-  TimeNs covered = 0;
-  for (std::size_t i = 1; i < readings.size(); ++i) {
-    const TimeNs from = std::max(readings[i - 1].t_ns, begin_ns);
-    const TimeNs to = std::min(readings[i].t_ns, end_ns);
-    if (to <= from) continue;
-    const Eigen::Vector3d rate = 0.5 * (readings[i - 1].gyro + readings[i].gyro);
-    R_begin_now = R_begin_now * SO3::exp(rate * toSeconds(to - from));
-    covered += to - from;
-  }
-  // A gap in the readings leaves the turn unknown.
-  prior.valid = 10 * covered > 9 * (end_ns - begin_ns);
-  const SO3& R_vehicle_imu = T_vehicle_imu.rotation();
-  prior.T_previous_current.rotation() = R_vehicle_imu * R_begin_now * R_vehicle_imu.inverse();
-  return prior;
-}
-
-// A frame set with the readings that came since the one before (and the first one after it).
-struct Packet {
-  std::vector<ImuSample> imu;
-  std::vector<WheelSample> wheel;
-  FrameSet frames;
-  Clock::time_point arrived;
-};
 
 }  // namespace
 
@@ -87,7 +56,7 @@ class MappingRun::Impl {
  private:
   // The estimator's part of one frame set; runs beside the tracking of the next.
   struct Estimation {
-    Packet packet;
+    FramePacket packet;
     int number = 0;  // counts frame sets
     TrackSet tracks;
     MotionPredictor state;  // after it
@@ -96,13 +65,13 @@ class MappingRun::Impl {
     Clock::time_point end;
   };
 
-  void process(Packet packet);
-  TrackSet track(const Packet& packet);
+  void process(FramePacket packet);
+  TrackSet track(const FramePacket& packet);
   void finishEstimation();
   void estimate(Estimation& work);
   PoseEstimate odometryOf(const Estimation& work);
   void offerPictures(Estimation& work, const PoseEstimate& odometry_pose);
-  MotionPrior predict(const Packet& packet);
+  MotionPrior predict(const FramePacket& packet);
   void summarise(Clock::time_point begin);
   Clock::time_point awaitDue(TimeNs t_ns);
 
@@ -130,7 +99,7 @@ class MappingRun::Impl {
   ThreadPool pool_;                      // last: the pools' threads use what is above
 };
 
-MotionPrior MappingRun::Impl::predict(const Packet& packet) {
+MotionPrior MappingRun::Impl::predict(const FramePacket& packet) {
   if (!last_t_ns_) return {};
   // Always the state two frame sets back (the estimation of the last one may still run), so that
   // the prior does not depend on who is faster.
@@ -140,10 +109,10 @@ MotionPrior MappingRun::Impl::predict(const Packet& packet) {
   if (state_.valid()) return state_.predict(*last_t_ns_, now);
   std::vector<ImuSample> readings = last_imu_;
   readings.insert(readings.end(), packet.imu.begin(), packet.imu.end());
-  return turnBetween(readings, T_vehicle_imu_, *last_t_ns_, now);
+  return turnByGyroscope(readings, T_vehicle_imu_, *last_t_ns_, now);
 }
 
-TrackSet MappingRun::Impl::track(const Packet& packet) {
+TrackSet MappingRun::Impl::track(const FramePacket& packet) {
   TrackSet tracks;
   if (reckoning != nullptr) {
     tracks.t_ns = packet.frames.t_ns;
@@ -166,7 +135,7 @@ TrackSet MappingRun::Impl::track(const Packet& packet) {
   return tracks;
 }
 
-void MappingRun::Impl::process(Packet packet) {
+void MappingRun::Impl::process(FramePacket packet) {
   const Clock::time_point begin = Clock::now();
   TrackSet tracks = track(packet);
   const Clock::time_point end = Clock::now();
@@ -262,52 +231,27 @@ Clock::time_point MappingRun::Impl::awaitDue(TimeNs t_ns) {
 Status MappingRun::Impl::run(SensorSource& source, const ProgressCallback& progress) {
   const Clock::time_point begin = Clock::now();
   const SensorSourceInfo& info = source.info();
-  std::optional<Packet> waiting;  // a frame set that waits for its next IMU reading
-  Packet gathering;
-  double read_ms = 0.0;
+  FramePackets packets(source, [this](TimeNs t_ns) { return awaitDue(t_ns); });
   Status status;
-  const auto dispatch = [&] {
-    if (!waiting) return;
-    if (summary.frame_sets == 0) first_t_ns_ = waiting->frames.t_ns;
-    summary.recorded_s = toSeconds(waiting->frames.t_ns - first_t_ns_);
+  while (true) {
+    Result<std::optional<FramePacket>> packet = packets.next();
+    if (!packet) {
+      status = packet.error();
+      break;
+    }
+    if (!packet->has_value()) break;
+    const TimeNs t_ns = (*packet)->frames.t_ns;
+    if (summary.frame_sets == 0) first_t_ns_ = t_ns;
+    summary.recorded_s = toSeconds(t_ns - first_t_ns_);
     ++summary.frame_sets;
-    read_clock_.add(read_ms);
-    read_ms = 0.0;
-    const TimeNs t_ns = waiting->frames.t_ns;
-    process(std::move(*waiting));
-    waiting.reset();
+    read_clock_.add((*packet)->reading_ms);
+    process(std::move(**packet));
     if (progress && info.end_ns > info.start_ns) {
       progress(std::clamp(toSeconds(t_ns - info.start_ns) / toSeconds(info.end_ns - info.start_ns),
                           0.0, 1.0));
     }
-  };
-  while (true) {
-    const Clock::time_point asked = Clock::now();
-    Result<std::optional<SensorEvent>> event = source.next();
-    const double waited = millisecondsBetween(asked, Clock::now());
-    read_ms += waited;
-    summary.reading_s += 1e-3 * waited;
-    if (!event) {
-      status = event.error();
-      break;
-    }
-    if (!event->has_value()) break;
-    if (const auto* imu = std::get_if<ImuSample>(&**event)) {
-      (waiting ? waiting->imu : gathering.imu).push_back(*imu);
-      if (waiting && imu->t_ns >= waiting->frames.t_ns) dispatch();
-    } else if (const auto* wheel = std::get_if<WheelSample>(&**event)) {
-      // Between a frame set and the reading that it waits for, only what is not later belongs to
-      // it.
-      const bool belongs = waiting && wheel->t_ns <= waiting->frames.t_ns;
-      (belongs ? waiting->wheel : gathering.wheel).push_back(*wheel);
-    } else {
-      dispatch();  // the IMU is silent: the frame set before goes on without the reading after it
-      waiting = std::exchange(gathering, Packet{});
-      waiting->frames = std::get<FrameSet>(std::move(**event));
-      waiting->arrived = awaitDue(waiting->frames.t_ns);
-    }
   }
-  dispatch();
+  summary.reading_s = packets.readingSeconds();
   finishEstimation();
   if (mapper != nullptr) {
     semantics->finish();
