@@ -183,6 +183,24 @@ class RunEurocTest(unittest.TestCase):
         self.assertLessEqual({"bev", "segment", "features", "fuse"}, set(stages))
         self.assertEqual(parkade("map", "check", runs[0] / "map.db").returncode, 0)
 
+    def test_a_saved_map_has_to_be_one_and_the_method_able(self):
+        out = self.folder / "located"
+        foreign = self.folder / "foreign.db"
+        foreign.write_text("no map")
+        for arguments, words in [
+            (["--method", "fused", "--map", self.folder / "nowhere.db"], ["nowhere.db"]),
+            (["--method", "fused", "--map", foreign], ["foreign.db"]),
+        ]:
+            result = parkade("run", EUROC, "--out", out, "--duration", 5, *arguments)
+            self.assertEqual(result.returncode, 1, result.stderr)
+            for word in words:
+                self.assertIn(word, result.stderr)
+            self.assertFalse(out.exists())
+        for method in ["vis", "avp-slam"]:
+            result = parkade("run", EUROC, "--out", out, "--method", method, "--map", foreign)
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertIn("--method fused", result.stderr)
+
     def test_refuses_a_folder_with_something_else(self):
         foreign = self.folder / "foreign"
         foreign.mkdir()

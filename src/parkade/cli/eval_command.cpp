@@ -245,6 +245,16 @@ void addEvalCommand(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"se3", "sim3", "yaw", "origin", "none"}))
       ->capture_default_str()
       ->group("Measuring");
+#ifdef PARKADE_WITH_EVAL_MAP
+  command
+      ->add_option("--in-map", a->in_map,
+                   "Of a run in a saved map: that map (or its run's folder), and the sequence that "
+                   "it was made on, whose truth tells where it lies; no alignment")
+      ->expected(2)
+      ->type_name("MAP SEQ")
+      ->excludes("--align")
+      ->group("Measuring");
+#endif
   command->add_option("--rpe-delta", a->options.rpe.delta, "Distance of the RPE's pairs")
       ->check(CLI::PositiveNumber)
       ->capture_default_str()

@@ -46,13 +46,17 @@ constexpr const char* kRunFooter =
     "frame\n"
     "set from the start on, as known at its instant), trajectory_vio.tum, health.csv, "
     "timing.json,\n"
-    "metrics.json, config.yaml and report.html; with --final also trajectory_final.tum.\n"
+    "metrics.json, config.yaml and report.html; with --final also trajectory_final.tum. With "
+    "--map\n"
+    "all poses are in the map's frame, and trajectory.tum begins where the car is found in it.\n"
     "\n"
     "'parkade run --help-options' lists every option that --set and --config take.\n"
     "\n"
     "Examples:\n"
     "  parkade run SEQ --out OUT\n"
     "  parkade run SEQ --out OUT --cameras cam0 --set vio.window.keyframes=8 --final\n"
+    "  parkade run SEQ --out OUT --method fused\n"
+    "  parkade run LATER --out OUT2 --method fused --map OUT\n"
     "  parkade run SEQ --out OUT --duration 5 --debug-images OUT/tracks";
 
 Status configure(const RunArguments& arguments, PipelineOptions& options) {
@@ -81,12 +85,7 @@ Status locateInMap(const std::string& map, MappingRun& run) {
   if (saved->slots.empty()) {
     return Error{fmt::format("{}: holds no slots to find the car by", map)};
   }
-  Status status = run.locateIn(*saved);
-  if (!status) {
-    return Error{
-        fmt::format("--map {}: {}; take --method fused or semantic", map, status.error().message)};
-  }
-  return status;
+  return run.locateIn(*saved);
 }
 
 Status runSequence(const RunArguments& arguments) {
@@ -158,6 +157,13 @@ Status runSequence(const RunArguments& arguments) {
                              arguments.out)};
   }
   if (images && !images->status()) return images->status();
+  if (summary.poses == 0 && !arguments.map.empty() && !(*run)->odometry().empty()) {
+    return Error{fmt::format(
+        "{}: the car was not found in {}; is it a map of this garage, and of a place that the "
+        "drive "
+        "came by? The odometry's poses are in {}",
+        arguments.source.spec, arguments.map, joinPath(arguments.out, "trajectory_vio.tum"))};
+  }
   if (summary.poses == 0) {
     return Error{fmt::format("{}: no pose: the estimator did not start; see the reasons in {}",
                              arguments.source.spec, joinPath(arguments.out, "health.csv"))};
@@ -242,6 +248,11 @@ void addRunCommand(CLI::App& app, int& exit_code) {
       ->group("Work");
   command->footer(kRunFooter);
   command->callback([a, &exit_code] {
+    if (!a->map.empty() && a->method != "fused" && a->method != "semantic") {
+      throw CLI::ValidationError("--map", fmt::format("{} makes nothing of a map; take --method "
+                                                      "fused or semantic",
+                                                      a->method));
+    }
     const Status status = runSequence(*a);
     if (!status) exit_code = fail(status.error());
   });

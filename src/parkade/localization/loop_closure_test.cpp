@@ -10,9 +10,9 @@ namespace parkade {
 namespace {
 
 using testing::makePlan;
-using testing::ObserverNoise;
 using testing::Plan;
 using testing::PlanObserver;
+using testing::usualNoise;
 
 Submap submapAt(const PlanObserver& observer, double x, Random& random) {
   Submap submap;
@@ -21,16 +21,6 @@ Submap submapAt(const PlanObserver& observer, double x, Random& random) {
     submap.add(observer.observe(0, SE2(0.0, {x, 0.0}) * local, random, false), local);
   }
   return submap;
-}
-
-ObserverNoise usualNoise() {
-  ObserverNoise noise;
-  noise.line_sigma = 0.015;
-  noise.corner_sigma = 0.03;
-  noise.object_sigma = 0.05;
-  noise.attitude_sigma = 0.001;
-  noise.dropout = 0.2;
-  return noise;
 }
 
 TEST(LoopClosure, LookAlikeRowIsRefused) {

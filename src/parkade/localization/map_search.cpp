@@ -78,6 +78,27 @@ SemanticFrame thinned(const SemanticFrame& frame, std::size_t points) {
 
 }  // namespace
 
+SemanticFrame asFrame(const Submap& submap) {
+  constexpr double kLeastSigma = 0.03;  // m
+  SemanticFrame frame;
+  for (const LineFeature& line : submap.lines().features()) {
+    frame.line_points.push_back({line.p, line.normal,
+                                 std::max(kLeastSigma, 1.0 / std::sqrt(line.weight)),
+                                 line.semantic_class});
+  }
+  for (const PointFeature& landmark : submap.points()) {
+    if (!isPointLandmark(landmark.semantic_class)) continue;
+    ObjectObservation object;
+    object.semantic_class = landmark.semantic_class;
+    object.position.head<2>() = landmark.p;
+    object.covariance.topLeftCorner<2, 2>() = landmark.covariance;
+    object.text = landmark.text;
+    object.confidence = 1.0;
+    frame.objects.push_back(object);
+  }
+  return frame;
+}
+
 SE2 slotFrame(const std::array<Eigen::Vector2d, 4>& corners) {
   // The left end of the entrance lies to the left of who looks in.
   const Eigen::Vector2d left = corners[0] - corners[1];

@@ -56,6 +56,10 @@ struct Surroundings {
   std::vector<SE2> arrows;
 };
 
+/// What a submap holds, as if one picture had shown it; sigmas no less than what lies between a
+/// line and its like in the map of another drive.
+SemanticFrame asFrame(const Submap& submap);
+
 /// Where a slot lies: x into it, origin at the middle of its entrance.
 SE2 slotFrame(const std::array<Eigen::Vector2d, 4>& corners);
 

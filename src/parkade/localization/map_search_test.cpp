@@ -13,18 +13,9 @@ namespace parkade {
 namespace {
 
 using testing::makePlan;
-using testing::ObserverNoise;
 using testing::Plan;
 using testing::PlanObserver;
-
-ObserverNoise usualNoise() {
-  ObserverNoise noise;
-  noise.line_sigma = 0.015;
-  noise.corner_sigma = 0.03;
-  noise.object_sigma = 0.05;
-  noise.dropout = 0.2;
-  return noise;
-}
+using testing::usualNoise;
 
 void addOnce(const SE2& place, std::vector<SE2>& places) {
   const bool known = std::any_of(places.begin(), places.end(),
@@ -49,19 +40,7 @@ Surroundings gather(const Plan& plan, const SE2& at, double way, Random& random)
       addOnce(here * SE2(object.heading, object.position.head<2>()), result.arrows);
     }
   }
-  for (const LineFeature& line : all.lines().features()) {
-    result.features.line_points.push_back({line.p, line.normal, 0.03, line.semantic_class});
-  }
-  for (const PointFeature& landmark : all.points()) {
-    if (!isPointLandmark(landmark.semantic_class)) continue;
-    ObjectObservation object;
-    object.semantic_class = landmark.semantic_class;
-    object.position.head<2>() = landmark.p;
-    object.covariance.topLeftCorner<2, 2>() = landmark.covariance;
-    object.text = landmark.text;
-    object.confidence = 1.0;
-    result.features.objects.push_back(object);
-  }
+  result.features = asFrame(all);
   return result;
 }
 

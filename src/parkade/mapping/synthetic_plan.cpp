@@ -98,6 +98,16 @@ std::vector<SE2> blockDrive(double length, int laps, double step) {
   return poses;
 }
 
+ObserverNoise usualNoise() {
+  ObserverNoise noise;
+  noise.line_sigma = 0.015;
+  noise.corner_sigma = 0.03;
+  noise.object_sigma = 0.05;
+  noise.attitude_sigma = 0.001;
+  noise.dropout = 0.2;
+  return noise;
+}
+
 // The straight line through noisy points of one painted line.
 void addSegment(const std::vector<Vector2d>& points, const PlanLine& line, double sigma,
                 std::vector<LineSegment>& segments) {

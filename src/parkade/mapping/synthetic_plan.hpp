@@ -73,6 +73,9 @@ struct ObserverNoise {
   double range_m = 7.5;
 };
 
+/// Noise as that of pictures on a good floor.
+ObserverNoise usualNoise();
+
 /// Sees a plan from poses, occluded by parked and moving cars.
 class PlanObserver {
  public:

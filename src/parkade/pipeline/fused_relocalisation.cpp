@@ -32,29 +32,6 @@ void gather(const Submap& submap, const SE2& T_all_submap, Submap& all) {
   }
 }
 
-// The same as if one picture had shown it.
-SemanticFrame asFrame(const Submap& all) {
-  // Tens of metres of way and another drive's map lie between a line and its like.
-  constexpr double kLeastSigma = 0.03;  // m
-  SemanticFrame frame;
-  for (const LineFeature& line : all.lines().features()) {
-    frame.line_points.push_back({line.p, line.normal,
-                                 std::max(kLeastSigma, 1.0 / std::sqrt(line.weight)),
-                                 line.semantic_class});
-  }
-  for (const PointFeature& landmark : all.points()) {
-    if (!isPointLandmark(landmark.semantic_class)) continue;
-    ObjectObservation object;
-    object.semantic_class = landmark.semantic_class;
-    object.position.head<2>() = landmark.p;
-    object.covariance.topLeftCorner<2, 2>() = landmark.covariance;
-    object.text = landmark.text;
-    object.confidence = 1.0;
-    frame.objects.push_back(object);
-  }
-  return frame;
-}
-
 }  // namespace
 
 Surroundings FusedMapper::Impl::surroundings(const View& view) const {

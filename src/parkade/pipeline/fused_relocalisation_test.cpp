@@ -12,19 +12,9 @@ namespace parkade {
 namespace {
 
 using testing::makePlan;
-using testing::ObserverNoise;
 using testing::Plan;
 using testing::PlanObserver;
-
-ObserverNoise usualNoise() {
-  ObserverNoise noise;
-  noise.line_sigma = 0.015;
-  noise.corner_sigma = 0.03;
-  noise.object_sigma = 0.05;
-  noise.attitude_sigma = 0.002;
-  noise.dropout = 0.2;
-  return noise;
-}
+using testing::usualNoise;
 
 struct Localised {
   int poses = 0;          // with a place in the map
