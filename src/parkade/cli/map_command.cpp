@@ -18,12 +18,14 @@
 #include "parkade/mapping/map_drawing.hpp"
 #include "parkade/mapping/map_export.hpp"
 #include "parkade/mapping/map_file.hpp"
+#include "parkade/mapping/map_merge.hpp"
 
 namespace parkade::cli {
 namespace {
 
 struct MapArguments {
   std::string path;
+  std::string later;
   std::string json;
   std::string out;
   std::vector<std::string> formats;
@@ -44,12 +46,11 @@ nlohmann::json layerJson(const ParkingMap& map, GridLayer layer) {
           {"present_m2", area * static_cast<double>(present)}};
 }
 
+// Along the ways driven: a map may hold several drives.
 double graphLength(const ParkingMap& map) {
   double length = 0.0;
-  for (std::size_t i = 1; i < map.nodes.size(); ++i) {
-    length += (map.nodes[i].T_world_vehicle.translation() -
-               map.nodes[i - 1].T_world_vehicle.translation())
-                  .norm();
+  for (const PoseGraphEdge& edge : map.edges) {
+    if (edge.kind == EdgeKind::kOdometry) length += edge.T_from_to.translation().norm();
   }
   return length;
 }
@@ -197,6 +198,27 @@ Status exportMap(const MapArguments& arguments) {
   return {};
 }
 
+Status mergeMaps(const MapArguments& arguments) {
+  Result<ParkingMap> saved = loadMap(arguments.path);
+  if (!saved) return saved.error();
+  const Result<ParkingMap> later = loadMap(arguments.later);
+  if (!later) return later.error();
+  const Result<MergeReport> report = mergeMap(*later, *saved);
+  if (!report) {
+    return Error{
+        fmt::format("{} into {}: {}", arguments.later, arguments.path, report.error().message)};
+  }
+  Result<MapFile> file = MapFile::open(arguments.out);
+  if (!file) return file.error();
+  if (Status status = file->save(*saved); !status) return status;
+  fmt::print(
+      "{}: {} slots ({} seen again, {} new, {} refused, for they lie across others), {} objects "
+      "({} seen again, {} new)\n",
+      arguments.out, saved->slots.size(), report->slots_again, report->slots_new,
+      report->slots_refused, saved->objects.size(), report->objects_again, report->objects_new);
+  return {};
+}
+
 CLI::App* addAction(CLI::App* command, const char* name, const char* help,
                     const std::shared_ptr<MapArguments>& a, int& exit_code,
                     Status (*action)(const MapArguments&)) {
@@ -212,7 +234,7 @@ CLI::App* addAction(CLI::App* command, const char* name, const char* help,
 }  // namespace
 
 void addMapCommand(CLI::App& app, int& exit_code) {
-  auto* command = app.add_subcommand("map", "Describe, check or export a map");
+  auto* command = app.add_subcommand("map", "Describe, check, export or merge maps");
   const auto a = std::make_shared<MapArguments>();
   command->require_subcommand(1);
   auto* info = addAction(command, "info", "Say what a map holds", a, exit_code, showMap);
@@ -230,11 +252,17 @@ void addMapCommand(CLI::App& app, int& exit_code) {
   out->add_option("--metres-per-px", a->metres_per_px, "Of the picture")
       ->check(CLI::Range(0.005, 10.0))
       ->capture_default_str();
+  auto* merge =
+      addAction(command, "merge", "Add the map of a later drive (run --map) to a saved one", a,
+                exit_code, mergeMaps);
+  merge->add_option("LATER", a->later, "Map of the drive that was localised in MAP")->required();
+  merge->add_option("-o,--out", a->out, "Map file to write; may be MAP itself")->required();
   command->footer(
       "Examples:\n"
       "  parkade map info OUT/map.db\n"
       "  parkade map check OUT/map.db\n"
-      "  parkade map export OUT/map.db --out OUT/map --format nav2,geojson");
+      "  parkade map export OUT/map.db --out OUT/map --format nav2,geojson\n"
+      "  parkade map merge OUT/map.db LATER/map.db --out garage.db");
 }
 
 }  // namespace parkade::cli

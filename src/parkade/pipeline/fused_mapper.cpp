@@ -41,7 +41,8 @@ PoseEstimate FusedMapper::Impl::estimate() const {
   e.covariance.topLeftCorner<6, 6>() = to_level.transpose() * level * to_level;
   if (saved && !located()) {
     e.health = Health::kInitialising;
-    e.reason = "not yet found in the saved map";
+    e.reason =
+        "not yet found in the saved map" + (saved->reason.empty() ? "" : ": " + saved->reason);
   }
   return e;
 }

@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "parkade/fusion/pose_filter.hpp"
@@ -47,6 +48,7 @@ class FusedMapper::Impl {
     std::int64_t place = -1;  // of its origin, in the filter, once the car is found
     double last_search = -1e9;
     std::optional<SE2> T_map_world;  // by the last search that told one
+    std::string reason;              // why the last one told none
   };
 
   Impl(const FusedMapperOptions& o, std::vector<Eigen::Vector3d> cameras)

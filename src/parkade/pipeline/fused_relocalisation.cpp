@@ -82,6 +82,7 @@ void FusedMapper::Impl::searchSavedMap(const View& view) {
   const SavedMapOptions& o = options.saved_map;
   const LoopResult found =
       findInMap(surroundings(view), saved->map, o.search, options.registration);
+  saved->reason = found.reason;
   if (!found.accepted) {
     logDebug("saved map, after {:.0f} m: {}", view.travelled, found.reason);
     return;

@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/mapping/map_merge.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "parkade/geometry/se2.hpp"
+#include "parkade/mapping/map_check.hpp"
+
+namespace parkade {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kSameSlot = 0.5;  // share of the smaller one's area
+constexpr double kTouches = 0.15;  // less is how neighbours lie
+
+struct SlotMatch {
+  std::optional<std::size_t> at;  // in the saved map
+  double overlap = 0.0;
+};
+
+SlotMatch matchSlot(const MapSlot& slot, const std::vector<MapSlot>& saved, std::size_t count) {
+  SlotMatch match;
+  for (std::size_t i = 0; i < count; ++i) {
+    constexpr double kReach = 8.0;  // m, beyond which no two slots touch
+    if ((saved[i].entrance() - slot.entrance()).norm() > kReach) continue;
+    const double overlap = overlapShare(slot.corners, saved[i].corners);
+    if (overlap <= match.overlap) continue;
+    match.overlap = overlap;
+    if (overlap >= kSameSlot) match.at = i;
+  }
+  return match;
+}
+
+// The share of a mean that a measurement gets, by standard deviations.
+double shareOf(double sigma, double other) {
+  constexpr double kLeast = 0.005;  // m
+  const double own = 1.0 / std::pow(std::max(kLeast, sigma), 2);
+  return own / (own + 1.0 / std::pow(std::max(kLeast, other), 2));
+}
+
+double jointSigma(double a, double b) {
+  return a > 0.0 && b > 0.0 ? 1.0 / std::hypot(1.0 / a, 1.0 / b) : std::max(a, b);
+}
+
+void takeText(const std::string& later, bool prevails, std::string& saved) {
+  if (!later.empty() && (saved.empty() || prevails)) saved = later;
+}
+
+void mergeSlot(const MapSlot& later, MapSlot& saved) {
+  // Entered from the same side, else the saved one's shape stays.
+  constexpr double kSameCorner = 1.0;  // m
+  const bool alike = (later.corners[0] - saved.corners[0]).norm() < kSameCorner &&
+                     (later.corners[1] - saved.corners[1]).norm() < kSameCorner;
+  if (alike && later.observations > 0) {
+    const double share = shareOf(later.corner_sigma, saved.corner_sigma);
+    for (std::size_t i = 0; i < 4; ++i) {
+      saved.corners[i] += share * (later.corners[i] - saved.corners[i]);
+    }
+    saved.corner_sigma = jointSigma(later.corner_sigma, saved.corner_sigma);
+  }
+  const bool prevails = later.observations > saved.observations;
+  takeText(later.number, prevails, saved.number);
+  takeText(later.zone, prevails, saved.zone);
+  if (later.observations > 0) {
+    saved.probability_free = later.probability_free;
+    saved.last_seen_ns = later.last_seen_ns;
+  }
+  saved.observations += later.observations;
+}
+
+// The maps are of one world if what both know lies on one another.
+Status checkSameWorld(const ParkingMap& later, const ParkingMap& saved) {
+  int known = 0;
+  int same = 0;
+  for (const MapSlot& slot : later.slots) {
+    const SlotMatch match = matchSlot(slot, saved.slots, saved.slots.size());
+    if (match.overlap <= 0.0) continue;
+    ++known;
+    same += match.at ? 1 : 0;
+  }
+  constexpr int kLeast = 3;
+  constexpr double kShare = 0.6;
+  if (same >= kLeast && same >= kShare * known) return {};
+  return Error{fmt::format(
+      "{} of the later map's {} slots lie on one of the saved map's, {} of them as the same slot: "
+      "the maps are not of one world; was the later drive localised in the saved map?",
+      known, later.slots.size(), same)};
+}
+
+std::int64_t nextId(const ParkingMap& map) {
+  std::int64_t id = 0;
+  for (const MapSlot& slot : map.slots) id = std::max(id, slot.id);
+  for (const MapObject& object : map.objects) id = std::max(id, object.id);
+  return id + 1;
+}
+
+void mergeSlots(const ParkingMap& later, ParkingMap& saved, MergeReport& report) {
+  const std::size_t known = saved.slots.size();
+  std::int64_t id = nextId(saved);
+  for (const MapSlot& slot : later.slots) {
+    const SlotMatch match = matchSlot(slot, saved.slots, known);
+    if (match.at) {
+      mergeSlot(slot, saved.slots[*match.at]);
+      ++report.slots_again;
+    } else if (match.overlap > kTouches) {
+      ++report.slots_refused;
+    } else {
+      saved.slots.push_back(slot);
+      saved.slots.back().id = id++;
+      ++report.slots_new;
+    }
+  }
+}
+
+bool sameObject(const MapObject& a, const MapObject& b) {
+  constexpr double kDistance = 1.0;  // m
+  constexpr double kTurn = 1.0;      // rad: a pillar's faces are markers of their own
+  return a.semantic_class == b.semantic_class &&
+         (a.position - b.position).head<2>().norm() < kDistance &&
+         std::abs(wrapAngle(a.heading - b.heading)) < kTurn;
+}
+
+void mergeObject(const MapObject& later, MapObject& saved) {
+  const double share = shareOf(later.position_sigma, saved.position_sigma);
+  const Eigen::Vector3d step = share * (later.position - saved.position);
+  saved.position += step;
+  for (Vector2d& corner : saved.outline) corner += step.head<2>();
+  if (saved.outline.empty()) saved.outline = later.outline;
+  saved.heading = wrapAngle(saved.heading + share * wrapAngle(later.heading - saved.heading));
+  saved.position_sigma = jointSigma(later.position_sigma, saved.position_sigma);
+  takeText(later.text, later.observations > saved.observations, saved.text);
+  saved.observations += later.observations;
+}
+
+void mergeObjects(const ParkingMap& later, ParkingMap& saved, MergeReport& report) {
+  const std::size_t known = saved.objects.size();
+  std::int64_t id = nextId(saved);
+  for (const MapObject& object : later.objects) {
+    std::optional<std::size_t> nearest;
+    for (std::size_t i = 0; i < known; ++i) {
+      if (!sameObject(object, saved.objects[i])) continue;
+      const auto distance = [&](std::size_t k) {
+        return (saved.objects[k].position - object.position).head<2>().norm();
+      };
+      if (!nearest || distance(i) < distance(*nearest)) nearest = i;
+    }
+    if (nearest) {
+      mergeObject(object, saved.objects[*nearest]);
+      ++report.objects_again;
+    } else {
+      saved.objects.push_back(object);
+      saved.objects.back().id = id++;
+      ++report.objects_new;
+    }
+  }
+}
+
+void mergeLayers(const LayeredGrid& later, LayeredGrid& saved) {
+  for (const GridLayer layer : kGridLayers) {
+    if (layer == GridLayer::kDynamic) continue;
+    later.forEachKnown(layer, [&](const Eigen::Vector2i& cell, const GridCell& seen) {
+      GridCell& kept = saved.touch(layer, cell);
+      if (layer == GridLayer::kAvailability) {
+        kept = seen;
+      } else if (seen.log_odds > 0) {
+        addEvidence(kept, seen.semantic_class, GridCell::kStep * static_cast<float>(seen.log_odds));
+      }
+    });
+  }
+}
+
+}  // namespace
+
+Result<MergeReport> mergeMap(const ParkingMap& later, ParkingMap& saved) {
+  if (later.grid.resolution() != saved.grid.resolution()) {
+    return Error{fmt::format("cells of {} m do not fit into a map of {} m", later.grid.resolution(),
+                             saved.grid.resolution())};
+  }
+  if (Status status = checkSameWorld(later, saved); !status) return status.error();
+  MergeReport report;
+  mergeSlots(later, saved, report);
+  mergeObjects(later, saved, report);
+  mergeLayers(later.grid, saved.grid);
+  return report;
+}
+
+}  // namespace parkade
