@@ -142,6 +142,8 @@ LoopResult findInMap(const Surroundings& surroundings, const SavedMap& map,
   rules.spacing_m = 0.8;
   rules.wrong_texts = options.wrong_texts;
   rules.texts_exclude = true;
+  rules.enough_texts = options.enough_texts;
+  rules.least_fit = options.least_fit_by_texts;
   return decidePlace(frame, map.landmarks, scored(places.all(), frame, map.landmarks, options),
                      rules, loop, registration);
 }

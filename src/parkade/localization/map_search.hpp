@@ -15,6 +15,8 @@ struct MapSearchOptions {
   double ambiguity = 0.75;
   double least_fit = 0.4;
   double wrong_texts = 0.25;
+  int enough_texts = 4;
+  double least_fit_by_texts = 0.15;
   double coarse_radius_m = 0.25;
   int line_points = 500;
 
@@ -30,6 +32,12 @@ struct MapSearchOptions {
             0.05, 1.0);
     v.field("wrong_texts", wrong_texts, "ratio",
             "Of the texts that stand where the map has one, so many may differ: some are misread.",
+            0.0, 1.0);
+    v.field("enough_texts", enough_texts, "count",
+            "Where so many texts agree, less of the rest has to be found.", 1, 1000);
+    v.field("least_fit_by_texts", least_fit_by_texts, "ratio",
+            "Share of what was seen lately that has to be found then: paint that cars hid from one "
+            "drive is in the other's map only.",
             0.0, 1.0);
     v.field("coarse_radius_m", coarse_radius_m, "m",
             "A line point counts for a place when its line is this near.", 0.05, 1.0);

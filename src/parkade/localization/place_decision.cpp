@@ -17,6 +17,9 @@ struct Texts {
   [[nodiscard]] bool contradict(const PlaceRules& rules) const {
     return wrong > rules.wrong_texts * compared;
   }
+  [[nodiscard]] bool suffice(const PlaceRules& rules) const {
+    return rules.enough_texts > 0 && compared - wrong >= rules.enough_texts;
+  }
 };
 Texts compareTexts(const SemanticFrame& frame, const Submap& submap, const SE2& T) {
   Texts texts;
@@ -122,7 +125,7 @@ LoopResult decidePlace(const SemanticFrame& frame, const Submap& submap,
     result.reason = texts.compared == 1 ? "a marker there has another text"
                                         : fmt::format("{} of {} markers there have another text",
                                                       texts.wrong, texts.compared);
-  } else if (result.score < loop.least_fit) {
+  } else if (result.score < (texts.suffice(rules) ? rules.least_fit : loop.least_fit)) {
     result.reason = fmt::format("{:.0f} % fit", 100.0 * result.score);
   } else if (result.second > loop.ambiguity * result.score) {
     result.reason = fmt::format("ambiguous: {:.0f} % fit, and {:.0f} % at another place",

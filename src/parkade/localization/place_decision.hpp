@@ -78,8 +78,10 @@ bool samePlace(const SE2& a, const SE2& b, double distance);
 
 /// What makes two candidates one place, and what markers' texts say of one.
 struct PlaceRules {
-  double spacing_m = 0.5;      ///< nearer candidates are one place
-  double wrong_texts = 0.0;    ///< a place is refused where more of its texts are other ones
+  double spacing_m = 0.5;    ///< nearer candidates are one place
+  double wrong_texts = 0.0;  ///< a place is refused where more of its texts are other ones
+  int enough_texts = 0;      ///< where so many agree (0: never), another least_fit holds
+  double least_fit = 0.5;
   bool texts_exclude = false;  ///< such places are no rivals either
 };
 
