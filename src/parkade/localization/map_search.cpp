@@ -138,6 +138,8 @@ LoopResult findInMap(const Surroundings& surroundings, const SavedMap& map,
   loop.refined = options.refined;
   loop.ambiguity = options.ambiguity;
   loop.least_fit = options.least_fit;
+  RegistrationOptions whole = registration;
+  whole.min_inlier_share = options.min_inlier_share;
   PlaceRules rules;
   rules.spacing_m = 0.8;
   rules.wrong_texts = options.wrong_texts;
@@ -145,7 +147,7 @@ LoopResult findInMap(const Surroundings& surroundings, const SavedMap& map,
   rules.enough_texts = options.enough_texts;
   rules.least_fit = options.least_fit_by_texts;
   return decidePlace(frame, map.landmarks, scored(places.all(), frame, map.landmarks, options),
-                     rules, loop, registration);
+                     rules, loop, whole);
 }
 
 }  // namespace parkade

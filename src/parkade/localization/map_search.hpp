@@ -17,6 +17,7 @@ struct MapSearchOptions {
   double wrong_texts = 0.25;
   int enough_texts = 4;
   double least_fit_by_texts = 0.15;
+  double min_inlier_share = 0.3;
   double coarse_radius_m = 0.25;
   int line_points = 500;
 
@@ -38,6 +39,9 @@ struct MapSearchOptions {
     v.field("least_fit_by_texts", least_fit_by_texts, "ratio",
             "Share of what was seen lately that has to be found then: paint that cars hid from one "
             "drive is in the other's map only.",
+            0.0, 1.0);
+    v.field("min_inlier_share", min_inlier_share, "ratio",
+            "In place of the registration's: of another drive's lines more are worn or hidden.",
             0.0, 1.0);
     v.field("coarse_radius_m", coarse_radius_m, "m",
             "A line point counts for a place when its line is this near.", 0.05, 1.0);
