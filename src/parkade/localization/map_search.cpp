@@ -27,8 +27,8 @@ class Places {
 
  private:
   void add(const SE2& T_map_vehicle) {
-    constexpr double kCell = 0.4;            // m
-    constexpr double kTurn = 3.0 * kDegree;  // several slots seen tell the same place
+    constexpr double kCell = 0.25;           // m
+    constexpr double kTurn = 1.0 * kDegree;  // several slots seen tell the same place
     const auto bin = [](double value, double size) {
       return static_cast<int>(std::lround(value / size));
     };
@@ -49,13 +49,14 @@ std::vector<PlaceCandidate> scored(const std::vector<SE2>& places, const Semanti
   for (const SE2& place : places) candidates.push_back({place, 0.0});
   struct Round {
     std::size_t line_points;
-    int kept;  // of each place that will be registered
+    double radius;  // m, by the one of the first round
+    int kept;       // of each place that will be registered
   };
-  constexpr std::array<Round, 3> kRounds = {{{20, 40}, {60, 10}, {250, 10}}};
+  constexpr std::array<Round, 3> kRounds = {{{20, 1.0, 20}, {60, 1.0, 8}, {250, 0.5, 8}}};
   for (const Round& round : kRounds) {
     const std::size_t stride =
         std::max<std::size_t>(1, frame.line_points.size() / round.line_points);
-    const PlaceScorer scorer(frame, landmarks, options.coarse_radius_m, stride);
+    const PlaceScorer scorer(frame, landmarks, round.radius * options.coarse_radius_m, stride);
     for (PlaceCandidate& c : candidates) c.score = scorer.at(c.T_map_vehicle);
     std::stable_sort(
         candidates.begin(), candidates.end(),
@@ -140,8 +141,11 @@ LoopResult findInMap(const Surroundings& surroundings, const SavedMap& map,
   loop.least_fit = options.least_fit;
   RegistrationOptions whole = registration;
   whole.min_inlier_share = options.min_inlier_share;
+  whole.max_iterations = options.max_iterations;
   PlaceRules rules;
-  rules.spacing_m = 0.8;
+  // Places as near as this may end elsewhere: worn lines pull a registration to their like.
+  rules.spacing_m = 0.25;
+  rules.spacing_rad = 1.0 * kDegree;
   rules.wrong_texts = options.wrong_texts;
   rules.texts_exclude = true;
   rules.enough_texts = options.enough_texts;

@@ -11,15 +11,16 @@
 namespace parkade {
 
 struct MapSearchOptions {
-  int refined = 16;
+  int refined = 40;
   double ambiguity = 0.75;
   double least_fit = 0.4;
   double wrong_texts = 0.25;
   int enough_texts = 4;
   double least_fit_by_texts = 0.15;
   double min_inlier_share = 0.3;
+  int max_iterations = 8;
   double coarse_radius_m = 0.25;
-  int line_points = 500;
+  int line_points = 400;
 
   void visit(OptionVisitor& v) {
     v.field("refined", refined, "count", "Best places of the whole map that are registered.", 1,
@@ -43,6 +44,7 @@ struct MapSearchOptions {
     v.field("min_inlier_share", min_inlier_share, "ratio",
             "In place of the registration's: of another drive's lines more are worn or hidden.",
             0.0, 1.0);
+    v.field("max_iterations", max_iterations, "count", "Steps of a registration, at most.", 1, 100);
     v.field("coarse_radius_m", coarse_radius_m, "m",
             "A line point counts for a place when its line is this near.", 0.05, 1.0);
     v.field("line_points", line_points, "count", "Of what was seen lately, spread evenly.", 50,

@@ -74,10 +74,9 @@ bool PlaceScorer::inside(const Eigen::Vector2d& q) const {
   return (q - submap_.low()).minCoeff() > -kMargin && (submap_.high() - q).minCoeff() > -kMargin;
 }
 
-bool samePlace(const SE2& a, const SE2& b, double distance) {
-  constexpr double kAngle = 0.06;
+bool samePlace(const SE2& a, const SE2& b, double distance, double angle) {
   return (a.translation() - b.translation()).norm() < distance &&
-         std::abs(wrapAngle(a.angle() - b.angle())) < kAngle;
+         std::abs(wrapAngle(a.angle() - b.angle())) < angle;
 }
 
 LoopResult decidePlace(const SemanticFrame& frame, const Submap& submap,
@@ -95,7 +94,7 @@ LoopResult decidePlace(const SemanticFrame& frame, const Submap& submap,
   for (const PlaceCandidate& c : candidates) {
     if (static_cast<int>(tried.size()) >= loop.refined) break;
     const bool near = std::any_of(tried.begin(), tried.end(), [&](const SE2& other) {
-      return samePlace(c.T_map_vehicle, other, rules.spacing_m);
+      return samePlace(c.T_map_vehicle, other, rules.spacing_m, rules.spacing_rad);
     });
     if (near) continue;
     tried.push_back(c.T_map_vehicle);

@@ -73,12 +73,13 @@ struct PlaceCandidate {
   double score = 0.0;
 };
 
-/// The poses are the same place: to within a distance (m) and 3.4 degrees.
-bool samePlace(const SE2& a, const SE2& b, double distance);
+/// The poses are the same place: to within a distance (m) and an angle (rad).
+bool samePlace(const SE2& a, const SE2& b, double distance, double angle = 0.06);
 
 /// What makes two candidates one place, and what markers' texts say of one.
 struct PlaceRules {
-  double spacing_m = 0.5;    ///< nearer candidates are one place
+  double spacing_m = 0.5;  ///< nearer candidates are one place
+  double spacing_rad = 0.06;
   double wrong_texts = 0.0;  ///< a place is refused where more of its texts are other ones
   int enough_texts = 0;      ///< where so many agree (0: never), another least_fit holds
   double least_fit = 0.5;
