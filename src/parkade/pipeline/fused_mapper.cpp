@@ -39,7 +39,7 @@ PoseEstimate FusedMapper::Impl::estimate() const {
     for (int j = 0; j < 4; ++j) level(kAt[i], kAt[j]) = P(i, j);
   }
   e.covariance.topLeftCorner<6, 6>() = to_level.transpose() * level * to_level;
-  if (saved && !located()) {
+  if (saved && !saved->told) {
     e.health = Health::kInitialising;
     e.reason =
         "not yet found in the saved map" + (saved->reason.empty() ? "" : ": " + saved->reason);

@@ -79,6 +79,10 @@ struct SavedMapOptions {
   double every_m = 2.0;
   double agree_m = 0.3;
   double agree_deg = 1.0;
+  double found_sigma_m = 0.2;
+  double found_sigma_deg = 1.0;
+  double told_sigma_m = 0.1;
+  double give_up_m = 15.0;
   double sigma_m = 0.02;
   double sigma_deg = 0.1;
   MapSearchOptions search;
@@ -91,6 +95,14 @@ struct SavedMapOptions {
     v.field("agree_m", agree_m, "m", "Two searches one after the other that agree to this find it.",
             0.01, 5.0);
     v.field("agree_deg", agree_deg, "deg", "The same of the heading.", 0.01, 20.0);
+    v.field("found_sigma_m", found_sigma_m, "m",
+            "How well a search knows the place; the frames after it tell it better.", 0.0, 2.0);
+    v.field("found_sigma_deg", found_sigma_deg, "deg", "The same of the heading.", 0.0, 20.0);
+    v.field("told_sigma_m", told_sigma_m, "m",
+            "Poses are given out once the place is known to this.", 0.01, 5.0);
+    v.field("give_up_m", give_up_m, "m",
+            "A place that no frame has confirmed over this much of the way is searched anew.", 1.0,
+            1000.0);
     v.field("sigma_m", sigma_m, "m",
             "Error that registrations to one place of the map share: its own, there.", 0.0, 1.0);
     v.field("sigma_deg", sigma_deg, "deg", "The same of their heading.", 0.0, 5.0);

@@ -46,6 +46,8 @@ class FusedMapper::Impl {
     explicit Saved(const ParkingMap& file) : map(file) {}
     SavedMap map;
     std::int64_t place = -1;  // of its origin, in the filter, once the car is found
+    double found_at = 0.0;    // way travelled then
+    bool told = false;        // frames have since said the same: poses are given out
     double last_search = -1e9;
     std::optional<SE2> T_map_world;  // by the last search that told one
     std::string reason;              // why the last one told none
@@ -86,6 +88,7 @@ class FusedMapper::Impl {
   void locate(const SemanticFrame& frame, const View& view);
   void searchSavedMap(const View& view);
   void settleInSavedMap(const Registration& fit, const View& view);
+  void confirmPlace(const View& view);
   void registerToSavedMap(const SemanticFrame& frame, const View& view);
   [[nodiscard]] Surroundings surroundings(const View& view) const;
   void rebase(const SE2& T_new_world, double dz);

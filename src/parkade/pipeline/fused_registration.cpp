@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The Parkade authors
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -11,11 +10,6 @@
 
 namespace parkade {
 namespace {
-
-double largestSigma(const Eigen::Matrix2d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(covariance, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, eigen.eigenvalues()[1]));
-}
 
 // By how much more a registration errs that overlaps at the edges of what both have seen: there
 // pitch and roll move what a picture shows, all of it together.

@@ -68,6 +68,7 @@ Surroundings FusedMapper::Impl::surroundings(const View& view) const {
 void FusedMapper::Impl::locate(const SemanticFrame& frame, const View& view) {
   if (located()) {
     registerToSavedMap(frame, view);
+    if (!saved->told) confirmPlace(view);
     return;
   }
   if (view.travelled < options.saved_map.least_m ||
@@ -114,11 +115,27 @@ void FusedMapper::Impl::settleInSavedMap(const Registration& fit, const View& vi
   constexpr double kAnywhere = 100.0;  // m, and rad
   saved->place = filter.addPlace({}, kAnywhere * Eigen::Matrix4d::Identity());
   const SavedMapOptions& o = options.saved_map;
-  filter.updateBetween(saved->place, view.anchor, fit.T_map_vehicle,
-                       withSharedNoise(fit.information, sharedNoise(o.sigma_m, o.sigma_deg)),
-                       options.submaps.gate_probability);
+  filter.updateBetween(
+      saved->place, view.anchor, fit.T_map_vehicle,
+      withSharedNoise(fit.information, sharedNoise(o.found_sigma_m, o.found_sigma_deg)),
+      options.submaps.gate_probability);
+  saved->found_at = view.travelled;
   corrected = true;
-  logInfo("found in the saved map after {:.0f} m", view.travelled);
+}
+
+// A search finds the right place before it lies right in it, where paint is worn.
+void FusedMapper::Impl::confirmPlace(const View& view) {
+  const SavedMapOptions& o = options.saved_map;
+  const Eigen::Matrix4d P = filter.relativeCovariance(saved->place, view.anchor);
+  if (largestSigma(P.topLeftCorner<2, 2>()) < o.told_sigma_m) {
+    saved->told = true;
+    logInfo("found in the saved map after {:.0f} m", view.travelled);
+  } else if (view.travelled - saved->found_at > o.give_up_m) {
+    filter.removeAnchor(saved->place);
+    saved->place = -1;
+    saved->T_map_world.reset();
+    saved->reason = "no frame confirms the place that was found";
+  }
 }
 
 void FusedMapper::Impl::registerToSavedMap(const SemanticFrame& frame, const View& view) {

@@ -3,6 +3,8 @@
 #include "parkade/pipeline/shared_noise.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
 
 #include "parkade/core/units.hpp"
 
@@ -24,6 +26,11 @@ Eigen::Matrix3d withSharedNoise(const Eigen::Matrix3d& information, const Eigen:
     result += u * u.transpose() / (1.0 / eigen.eigenvalues()[k] + u.dot(shared * u));
   }
   return result;
+}
+
+double largestSigma(const Eigen::Matrix2d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(covariance, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, eigen.eigenvalues()[1]));
 }
 
 }  // namespace parkade

@@ -13,4 +13,7 @@ Eigen::Matrix3d sharedNoise(double sigma_m, double sigma_deg);
 /// in its observable directions.
 Eigen::Matrix3d withSharedNoise(const Eigen::Matrix3d& information, const Eigen::Matrix3d& shared);
 
+/// Standard deviation along the worst direction.
+double largestSigma(const Eigen::Matrix2d& covariance);
+
 }  // namespace parkade
