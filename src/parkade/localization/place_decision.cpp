@@ -6,6 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "parkade/core/median.hpp"
+#include "parkade/geometry/alignment.hpp"
 
 namespace parkade {
 namespace {
@@ -34,6 +38,53 @@ Texts compareTexts(const SemanticFrame& frame, const Submap& submap, const SE2& 
     }
   }
   return texts;
+}
+
+// The frame's landmarks, and those of the submap that they fall on at a pose.
+struct Landmarks {
+  Points3d seen;  // in the plane
+  Points3d mapped;
+  [[nodiscard]] bool enough() const {
+    constexpr std::size_t kFewest = 3;
+    return seen.size() >= kFewest;
+  }
+};
+Landmarks landmarksAt(const SemanticFrame& frame, const Submap& submap, const SE2& T) {
+  constexpr double kRadius = 1.0;  // m
+  Landmarks landmarks;
+  for (const ObjectObservation& object : frame.objects) {
+    if (!isPointLandmark(object.semantic_class)) continue;
+    const Eigen::Vector2d p = object.position.head<2>();
+    const PointFeature* match =
+        submap.nearestPoint(T * p, object.semantic_class, object.text, kRadius);
+    if (match == nullptr) continue;
+    landmarks.seen.emplace_back(p.x(), p.y(), 0.0);
+    landmarks.mapped.emplace_back(match->p.x(), match->p.y(), 0.0);
+  }
+  return landmarks;
+}
+
+// The pose by landmarks alone.
+SE2 layOnLandmarks(const SemanticFrame& frame, const Submap& submap, SE2 T) {
+  constexpr int kRounds = 3;
+  for (int round = 0; round < kRounds; ++round) {
+    const Landmarks landmarks = landmarksAt(frame, submap, T);
+    if (!landmarks.enough()) return T;
+    T = SE2::fromSE3(alignYaw(landmarks.seen, landmarks.mapped).T_target_source);
+  }
+  return T;
+}
+
+// m, median; nothing where there are few.
+std::optional<double> landmarkOffset(const SemanticFrame& frame, const Submap& submap,
+                                     const SE2& T) {
+  const Landmarks landmarks = landmarksAt(frame, submap, T);
+  if (!landmarks.enough()) return std::nullopt;
+  std::vector<double> offsets;
+  for (std::size_t i = 0; i < landmarks.seen.size(); ++i) {
+    offsets.push_back((T * landmarks.seen[i].head<2>() - landmarks.mapped[i].head<2>()).norm());
+  }
+  return median(offsets);
 }
 
 }  // namespace
@@ -98,8 +149,9 @@ LoopResult decidePlace(const SemanticFrame& frame, const Submap& submap,
     });
     if (near) continue;
     tried.push_back(c.T_map_vehicle);
-    const Registration fit =
-        registerFrame(frame, submap, c.T_map_vehicle, registration, viewpoints);
+    const SE2 start = rules.landmarks_off_m > 0.0 ? layOnLandmarks(frame, submap, c.T_map_vehicle)
+                                                  : c.T_map_vehicle;
+    const Registration fit = registerFrame(frame, submap, start, registration, viewpoints);
     if (fit.line_matches < registration.min_matches / 2) continue;
     if (rules.texts_exclude && compareTexts(frame, submap, fit.T_map_vehicle).contradict(rules)) {
       continue;
@@ -120,7 +172,12 @@ LoopResult decidePlace(const SemanticFrame& frame, const Submap& submap,
     result.second = std::max(result.second, end.score);
   }
   const Texts texts = compareTexts(frame, submap, result.registration.T_map_vehicle);
-  if (texts.contradict(rules)) {
+  const std::optional<double> off =
+      rules.landmarks_off_m > 0.0 ? landmarkOffset(frame, submap, result.registration.T_map_vehicle)
+                                  : std::nullopt;
+  if (off && *off > rules.landmarks_off_m) {
+    result.reason = fmt::format("landmarks lie {:.1f} m off", *off);
+  } else if (texts.contradict(rules)) {
     result.reason = texts.compared == 1 ? "a marker there has another text"
                                         : fmt::format("{} of {} markers there have another text",
                                                       texts.wrong, texts.compared);

@@ -76,14 +76,18 @@ struct PlaceCandidate {
 /// The poses are the same place: to within a distance (m) and an angle (rad).
 bool samePlace(const SE2& a, const SE2& b, double distance, double angle = 0.06);
 
-/// What makes two candidates one place, and what markers' texts say of one.
+/// What makes two candidates one place, and what landmarks say of one.
 struct PlaceRules {
   double spacing_m = 0.5;  ///< nearer candidates are one place
   double spacing_rad = 0.06;
-  double wrong_texts = 0.0;  ///< a place is refused where more of its texts are other ones
-  int enough_texts = 0;      ///< where so many agree (0: never), another least_fit holds
-  double least_fit = 0.5;
+  double wrong_texts = 0.0;    ///< a place is refused where more of its texts are other ones
   bool texts_exclude = false;  ///< such places are no rivals either
+  /// Where so many texts agree (0: never), another least_fit holds.
+  int enough_texts = 0;
+  double least_fit = 0.5;
+  /// Landmarks are laid on one another before lines are (0: not), and their median is no farther
+  /// off than this afterwards, m.
+  double landmarks_off_m = 0.0;
 };
 
 /// Registers the best candidates of each place and takes the one that fits best; refuses it where
