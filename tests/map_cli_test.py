@@ -5,6 +5,7 @@
 
 import json
 import pathlib
+import shutil
 import sqlite3
 import struct
 import subprocess
@@ -59,6 +60,24 @@ class MapTest(unittest.TestCase):
         self.assertEqual(result.returncode, 1)
         self.assertIn("slots 10 and 11: 100 %", result.stdout)
         self.assertIn("1 fault", result.stderr)
+
+    def test_merge(self):
+        later = self.folder / "later.db"
+        shutil.copy(self.map, later)
+        out = self.folder / "garage.db"
+        result = parkade_map("merge", self.map, later, "--out", out)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("6 slots (6 seen again, 0 new", result.stdout)
+        self.assertEqual(parkade_map("check", out).returncode, 0)
+        # A map of another world is refused, and what was written before stays.
+        with sqlite3.connect(later) as database:
+            database.execute("UPDATE slot SET " + ", ".join(f"x{i}=x{i}+1.2" for i in range(4)))
+        before = out.read_bytes()
+        result = parkade_map("merge", self.map, later, "--out", out)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("not of one world", result.stderr)
+        self.assertIn("later.db", result.stderr)
+        self.assertEqual(out.read_bytes(), before)
 
     def test_damaged_and_foreign_files(self):
         self.change("UPDATE slot SET probability_free = 7 WHERE id = 12")

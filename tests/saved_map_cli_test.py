@@ -55,8 +55,12 @@ class SavedMapTest(unittest.TestCase):
         self.assertIn("not yet found in the saved map", (later / "health.csv").read_text())
         rows = [len((later / f"trajectory{n}.tum").read_text().splitlines()) for n in ["", "_final"]]
         self.assertLess(rows[0] + 20, rows[1])
-        # Its own map lies in the same frame: judged by the truth through the first one's place.
-        self.assertEqual(parkade("map", "check", later / "map.db").returncode, 0)
+        # Its own map lies in the same frame, and adds to the first one.
+        garage = self.folder / "garage.db"
+        merged = parkade("map", "merge", self.first / "map.db", later / "map.db", "--out", garage)
+        self.assertEqual(merged.returncode, 0, merged.stderr)
+        self.assertRegex(merged.stdout, r"[1-9]\d* seen again")
+        self.assertEqual(parkade("map", "check", garage).returncode, 0)
 
     def test_another_garage_is_not_taken_for_it(self):
         other = self.folder / "other"

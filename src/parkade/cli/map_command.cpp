@@ -46,11 +46,12 @@ nlohmann::json layerJson(const ParkingMap& map, GridLayer layer) {
           {"present_m2", area * static_cast<double>(present)}};
 }
 
-// Along the ways driven: a map may hold several drives.
 double graphLength(const ParkingMap& map) {
   double length = 0.0;
-  for (const PoseGraphEdge& edge : map.edges) {
-    if (edge.kind == EdgeKind::kOdometry) length += edge.T_from_to.translation().norm();
+  for (std::size_t i = 1; i < map.nodes.size(); ++i) {
+    length += (map.nodes[i].T_world_vehicle.translation() -
+               map.nodes[i - 1].T_world_vehicle.translation())
+                  .norm();
   }
   return length;
 }
