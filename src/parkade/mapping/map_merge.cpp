@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kSameSlot = 0.5;  // share of the smaller one's area
+constexpr double kSameSlot = 0.7;  // share of the smaller one's area
 constexpr double kTouches = 0.15;  // less is how neighbours lie
 
 struct SlotMatch {
