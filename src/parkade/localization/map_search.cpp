@@ -148,7 +148,7 @@ LoopResult findInMap(const Surroundings& surroundings, const SavedMap& map,
   rules.spacing_rad = 1.0 * kDegree;
   rules.wrong_texts = options.wrong_texts;
   rules.texts_exclude = true;
-  rules.landmarks_off_m = options.landmarks_off_m;
+  rules.landmarks_first = true;
   rules.enough_texts = options.enough_texts;
   rules.least_fit = options.least_fit_by_texts;
   return decidePlace(frame, map.landmarks, scored(places.all(), frame, map.landmarks, options),

@@ -17,7 +17,6 @@ struct MapSearchOptions {
   double wrong_texts = 0.25;
   int enough_texts = 4;
   double least_fit_by_texts = 0.15;
-  double landmarks_off_m = 0.2;
   double min_inlier_share = 0.3;
   int max_iterations = 8;
   double coarse_radius_m = 0.25;
@@ -42,9 +41,6 @@ struct MapSearchOptions {
             "Share of what was seen lately that has to be found then: paint that cars hid from one "
             "drive is in the other's map only.",
             0.0, 1.0);
-    v.field("landmarks_off_m", landmarks_off_m, "m",
-            "Pillars, signs and arrows lie no farther off at the place told; their median.", 0.01,
-            5.0);
     v.field("min_inlier_share", min_inlier_share, "ratio",
             "In place of the registration's: of another drive's lines more are worn or hidden.",
             0.0, 1.0);

@@ -6,9 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
-#include "parkade/core/median.hpp"
 #include "parkade/geometry/alignment.hpp"
 
 namespace parkade {
@@ -75,18 +73,6 @@ SE2 layOnLandmarks(const SemanticFrame& frame, const Submap& submap, SE2 T) {
   return T;
 }
 
-// m, median; nothing where there are few.
-std::optional<double> landmarkOffset(const SemanticFrame& frame, const Submap& submap,
-                                     const SE2& T) {
-  const Landmarks landmarks = landmarksAt(frame, submap, T);
-  if (!landmarks.enough()) return std::nullopt;
-  std::vector<double> offsets;
-  for (std::size_t i = 0; i < landmarks.seen.size(); ++i) {
-    offsets.push_back((T * landmarks.seen[i].head<2>() - landmarks.mapped[i].head<2>()).norm());
-  }
-  return median(offsets);
-}
-
 }  // namespace
 
 double PlaceScorer::at(const SE2& T) const {
@@ -149,8 +135,8 @@ LoopResult decidePlace(const SemanticFrame& frame, const Submap& submap,
     });
     if (near) continue;
     tried.push_back(c.T_map_vehicle);
-    const SE2 start = rules.landmarks_off_m > 0.0 ? layOnLandmarks(frame, submap, c.T_map_vehicle)
-                                                  : c.T_map_vehicle;
+    const SE2 start =
+        rules.landmarks_first ? layOnLandmarks(frame, submap, c.T_map_vehicle) : c.T_map_vehicle;
     const Registration fit = registerFrame(frame, submap, start, registration, viewpoints);
     if (fit.line_matches < registration.min_matches / 2) continue;
     if (rules.texts_exclude && compareTexts(frame, submap, fit.T_map_vehicle).contradict(rules)) {
@@ -172,12 +158,7 @@ LoopResult decidePlace(const SemanticFrame& frame, const Submap& submap,
     result.second = std::max(result.second, end.score);
   }
   const Texts texts = compareTexts(frame, submap, result.registration.T_map_vehicle);
-  const std::optional<double> off =
-      rules.landmarks_off_m > 0.0 ? landmarkOffset(frame, submap, result.registration.T_map_vehicle)
-                                  : std::nullopt;
-  if (off && *off > rules.landmarks_off_m) {
-    result.reason = fmt::format("landmarks lie {:.1f} m off", *off);
-  } else if (texts.contradict(rules)) {
+  if (texts.contradict(rules)) {
     result.reason = texts.compared == 1 ? "a marker there has another text"
                                         : fmt::format("{} of {} markers there have another text",
                                                       texts.wrong, texts.compared);

@@ -85,9 +85,7 @@ struct PlaceRules {
   /// Where so many texts agree (0: never), another least_fit holds.
   int enough_texts = 0;
   double least_fit = 0.5;
-  /// Landmarks are laid on one another before lines are (0: not), and their median is no farther
-  /// off than this afterwards, m.
-  double landmarks_off_m = 0.0;
+  bool landmarks_first = false;  ///< they are laid on one another before lines are
 };
 
 /// Registers the best candidates of each place and takes the one that fits best; refuses it where
