@@ -27,7 +27,7 @@ class SavedMapTest(unittest.TestCase):
         cls.sequence = cls.folder / "sequence"
         cls.first = cls.folder / "first"
         for arguments in [
-            ["sim", "--route", "test3", "--fast", "--duration", 16, "--out", cls.sequence],
+            ["sim", "--route", "test3", "--fast", "--duration", 13, "--out", cls.sequence],
             ["run", cls.sequence, "--method", "fused", "--out", cls.first],
         ]:
             result = parkade(*arguments)
@@ -65,7 +65,7 @@ class SavedMapTest(unittest.TestCase):
     def test_another_garage_is_not_taken_for_it(self):
         other = self.folder / "other"
         made = parkade("sim", "--garage", "random", "--garage-seed", 7, "--route", "random", "--fast",
-                       "--duration", 12, "--out", other)  # fmt: skip
+                       "--duration", 7, "--out", other)  # fmt: skip
         self.assertEqual(made.returncode, 0, made.stderr)
         out = self.folder / "lost"
         result = parkade("run", other, "--method", "fused", "--map", self.first, "--out", out)
