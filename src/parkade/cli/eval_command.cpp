@@ -117,12 +117,17 @@ Status checkClocks(const TrajectoryFile& estimate, const TrajectoryFile& referen
 #ifdef PARKADE_WITH_EVAL_MAP
 // Lays the poses of a run in a saved map where the truth of the drive that made it says that it
 // lies.
-Status placeInMap(const EvalArguments& arguments, Trajectory& poses) {
+// Over the ground: a map knows no heights, and each drive its own vertical.
+Status placeInMap(const EvalArguments& arguments, Trajectory& poses, Trajectory& reference) {
   const Result<MapTruth> truth = readMapTruth(arguments.in_map[1]);
   if (!truth) return truth.error();
   const Result<PlacedMap> placed = loadPlacedMap(arguments.in_map[0], truth->driven);
   if (!placed) return placed.error();
-  for (StampedPose& pose : poses) pose.T_world_body = placed->T_truth_map * pose.T_world_body;
+  const auto flat = [](const SE3& T) { return SE2::fromSE3(T).toSE3(); };
+  for (StampedPose& pose : poses) {
+    pose.T_world_body = flat(placed->T_truth_map * pose.T_world_body);
+  }
+  for (StampedPose& pose : reference) pose.T_world_body = flat(pose.T_world_body);
   return {};
 }
 #endif
@@ -130,7 +135,7 @@ Status placeInMap(const EvalArguments& arguments, Trajectory& poses) {
 Status evaluateFiles(const EvalArguments& arguments) {
   auto estimate = read(estimatePath(arguments.trajectory), arguments.format, arguments.times);
   if (!estimate) return estimate.error();
-  const auto reference =
+  auto reference =
       read(referencePath(arguments.reference), arguments.reference_format, arguments.times);
   if (!reference) return reference.error();
   if (auto status = checkClocks(*estimate, *reference, arguments); !status) return status;
@@ -139,7 +144,8 @@ Status evaluateFiles(const EvalArguments& arguments) {
   EvaluationOptions options = arguments.options;
 #ifdef PARKADE_WITH_EVAL_MAP
   if (in_map) {
-    if (auto status = placeInMap(arguments, estimate->poses); !status) return status;
+    if (auto status = placeInMap(arguments, estimate->poses, reference->poses); !status)
+      return status;
     options.align = "none";
   }
 #endif
@@ -249,7 +255,7 @@ void addEvalCommand(CLI::App& app, int& exit_code) {
   command
       ->add_option("--in-map", a->in_map,
                    "Of a run in a saved map: that map (or its run's folder), and the sequence that "
-                   "it was made on, whose truth tells where it lies; no alignment")
+                   "it was made on, whose truth tells where it lies; over the ground, no alignment")
       ->expected(2)
       ->type_name("MAP SEQ")
       ->excludes("--align")
