@@ -25,9 +25,9 @@ struct SlotMatch {
   double overlap = 0.0;
 };
 
-SlotMatch matchSlot(const MapSlot& slot, const std::vector<MapSlot>& saved, std::size_t count) {
+SlotMatch matchSlot(const MapSlot& slot, const std::vector<MapSlot>& saved) {
   SlotMatch match;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < saved.size(); ++i) {
     constexpr double kReach = 8.0;  // m, beyond which no two slots touch
     if ((saved[i].entrance() - slot.entrance()).norm() > kReach) continue;
     const double overlap = overlapShare(slot.corners, saved[i].corners);
@@ -76,11 +76,10 @@ void mergeSlot(const MapSlot& later, MapSlot& saved) {
 }
 
 // The maps are of one world if what both know lies on one another.
-Status checkSameWorld(const ParkingMap& later, const ParkingMap& saved) {
+Status checkSameWorld(const std::vector<SlotMatch>& matches) {
   int known = 0;
   int same = 0;
-  for (const MapSlot& slot : later.slots) {
-    const SlotMatch match = matchSlot(slot, saved.slots, saved.slots.size());
+  for (const SlotMatch& match : matches) {
     if (match.overlap <= 0.0) continue;
     ++known;
     same += match.at ? 1 : 0;
@@ -91,7 +90,7 @@ Status checkSameWorld(const ParkingMap& later, const ParkingMap& saved) {
   return Error{fmt::format(
       "{} of the later map's {} slots lie on one of the saved map's, {} of them as the same slot: "
       "the maps are not of one world; was the later drive localised in the saved map?",
-      known, later.slots.size(), same)};
+      known, matches.size(), same)};
 }
 
 std::int64_t nextId(const ParkingMap& map) {
@@ -101,11 +100,13 @@ std::int64_t nextId(const ParkingMap& map) {
   return id + 1;
 }
 
-void mergeSlots(const ParkingMap& later, ParkingMap& saved, MergeReport& report) {
-  const std::size_t known = saved.slots.size();
+// matches: of the later map's slots, in their order.
+void mergeSlots(const ParkingMap& later, const std::vector<SlotMatch>& matches, ParkingMap& saved,
+                MergeReport& report) {
   std::int64_t id = nextId(saved);
-  for (const MapSlot& slot : later.slots) {
-    const SlotMatch match = matchSlot(slot, saved.slots, known);
+  for (std::size_t k = 0; k < matches.size(); ++k) {
+    const MapSlot& slot = later.slots[k];
+    const SlotMatch& match = matches[k];
     if (match.at) {
       mergeSlot(slot, saved.slots[*match.at]);
       ++report.slots_again;
@@ -183,9 +184,11 @@ Result<MergeReport> mergeMap(const ParkingMap& later, ParkingMap& saved) {
     return Error{fmt::format("cells of {} m do not fit into a map of {} m", later.grid.resolution(),
                              saved.grid.resolution())};
   }
-  if (Status status = checkSameWorld(later, saved); !status) return status.error();
+  std::vector<SlotMatch> matches;
+  for (const MapSlot& slot : later.slots) matches.push_back(matchSlot(slot, saved.slots));
+  if (Status status = checkSameWorld(matches); !status) return status.error();
   MergeReport report;
-  mergeSlots(later, saved, report);
+  mergeSlots(later, matches, saved, report);
   mergeObjects(later, saved, report);
   mergeLayers(later.grid, saved.grid);
   return report;
