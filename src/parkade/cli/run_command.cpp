@@ -160,8 +160,7 @@ Status runSequence(const RunArguments& arguments) {
   if (summary.poses == 0 && !arguments.map.empty() && !(*run)->odometry().empty()) {
     return Error{fmt::format(
         "{}: the car was not found in {}; is it a map of this garage, and of a place that the "
-        "drive "
-        "came by? The odometry's poses are in {}",
+        "drive came by? The odometry's poses are in {}",
         arguments.source.spec, arguments.map, joinPath(arguments.out, "trajectory_vio.tum"))};
   }
   if (summary.poses == 0) {

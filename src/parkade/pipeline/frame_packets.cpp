@@ -14,11 +14,9 @@ void FramePackets::begin(FrameSet frames) {
   waiting_->arrived = arrive_(waiting_->frames.t_ns);
 }
 
-FramePacket FramePackets::release() {
-  FramePacket packet = std::move(*waiting_);
-  waiting_.reset();
-  packet.reading_ms = std::exchange(reading_ms_, 0.0);
-  return packet;
+std::optional<FramePacket> FramePackets::release() {
+  if (waiting_) waiting_->reading_ms = std::exchange(reading_ms_, 0.0);
+  return std::exchange(waiting_, std::nullopt);
 }
 
 Result<std::optional<FramePacket>> FramePackets::next() {
@@ -35,13 +33,12 @@ Result<std::optional<FramePacket>> FramePackets::next() {
       break;
     }
     if (!event->has_value()) {
-      if (!waiting_) return std::optional<FramePacket>();
-      return std::optional<FramePacket>(release());
+      return release();
     }
     if (const auto* imu = std::get_if<ImuSample>(&**event)) {
       (waiting_ ? waiting_->imu : gathering_.imu).push_back(*imu);
       if (waiting_ && imu->t_ns >= waiting_->frames.t_ns) {
-        return std::optional<FramePacket>(release());
+        return release();
       }
     } else if (const auto* wheel = std::get_if<WheelSample>(&**event)) {
       // Between a frame set and the reading that it waits for, only what is not later belongs to
@@ -55,11 +52,11 @@ Result<std::optional<FramePacket>> FramePackets::next() {
       } else {
         // The inertial unit is silent: the frame set before goes on without the reading after it.
         next_frames_ = std::move(frames);
-        return std::optional<FramePacket>(release());
+        return release();
       }
     }
   }
-  if (waiting_) return std::optional<FramePacket>(release());
+  if (waiting_) return release();
   return *failed_;
 }
 

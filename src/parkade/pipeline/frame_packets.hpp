@@ -38,7 +38,7 @@ class FramePackets {
 
  private:
   void begin(FrameSet frames);
-  FramePacket release();
+  std::optional<FramePacket> release();  // the one that waits, where there is one
   SensorSource& source_;
   std::function<BusyTime::Clock::time_point(TimeNs)> arrive_;
   std::optional<FramePacket> waiting_;  // for its next inertial reading
