@@ -44,8 +44,11 @@ LoopResult searchInSubmap(const SemanticFrame& frame, const Submap& submap, cons
     }
   }
   PlaceRules rules;
+  rules.refined = loop.refined;
   rules.spacing_m = 1.1 * loop.step_m;
-  return decidePlace(frame, submap, std::move(candidates), rules, loop, registration, viewpoints);
+  rules.ambiguity = loop.ambiguity;
+  rules.least_fit = loop.least_fit;
+  return decidePlace(frame, submap, std::move(candidates), rules, registration, viewpoints);
 }
 
 }  // namespace parkade

@@ -42,6 +42,11 @@ class Places {
   std::vector<SE2> places_;
 };
 
+// That leaves about so many line points of a frame.
+std::size_t strideTo(std::size_t points, const SemanticFrame& frame) {
+  return std::max<std::size_t>(1, frame.line_points.size() / points);
+}
+
 // Scores all places by few points, the better ones of them by more.
 std::vector<PlaceCandidate> scored(const std::vector<SE2>& places, const SemanticFrame& frame,
                                    const Submap& landmarks, const MapSearchOptions& options) {
@@ -54,13 +59,10 @@ std::vector<PlaceCandidate> scored(const std::vector<SE2>& places, const Semanti
   };
   constexpr std::array<Round, 3> kRounds = {{{20, 1.0, 20}, {60, 1.0, 8}, {250, 0.5, 8}}};
   for (const Round& round : kRounds) {
-    const std::size_t stride =
-        std::max<std::size_t>(1, frame.line_points.size() / round.line_points);
-    const PlaceScorer scorer(frame, landmarks, round.radius * options.coarse_radius_m, stride);
+    const PlaceScorer scorer(frame, landmarks, round.radius * options.coarse_radius_m,
+                             strideTo(round.line_points, frame));
     for (PlaceCandidate& c : candidates) c.score = scorer.at(c.T_map_vehicle);
-    std::stable_sort(
-        candidates.begin(), candidates.end(),
-        [](const PlaceCandidate& a, const PlaceCandidate& b) { return a.score > b.score; });
+    sortByScore(candidates);
     const auto kept = static_cast<std::size_t>(round.kept * options.refined);
     if (candidates.size() > kept) candidates.resize(kept);
   }
@@ -70,7 +72,7 @@ std::vector<PlaceCandidate> scored(const std::vector<SE2>& places, const Semanti
 SemanticFrame thinned(const SemanticFrame& frame, std::size_t points) {
   SemanticFrame thin = frame;
   thin.line_points.clear();
-  const std::size_t stride = std::max<std::size_t>(1, frame.line_points.size() / points);
+  const std::size_t stride = strideTo(points, frame);
   for (std::size_t i = 0; i < frame.line_points.size(); i += stride) {
     thin.line_points.push_back(frame.line_points[i]);
   }
@@ -135,14 +137,13 @@ LoopResult findInMap(const Surroundings& surroundings, const SavedMap& map,
     nothing.reason = "no slot or arrow is seen yet";
     return nothing;
   }
-  LoopOptions loop;
-  loop.refined = options.refined;
-  loop.ambiguity = options.ambiguity;
-  loop.least_fit = options.least_fit;
   RegistrationOptions whole = registration;
   whole.min_inlier_share = options.min_inlier_share;
   whole.max_iterations = options.max_iterations;
   PlaceRules rules;
+  rules.refined = options.refined;
+  rules.ambiguity = options.ambiguity;
+  rules.least_fit = options.least_fit;
   // Places as near as this may end elsewhere: worn lines pull a registration to their like.
   rules.spacing_m = 0.25;
   rules.spacing_rad = 1.0 * kDegree;
@@ -150,9 +151,9 @@ LoopResult findInMap(const Surroundings& surroundings, const SavedMap& map,
   rules.texts_exclude = true;
   rules.landmarks_first = true;
   rules.enough_texts = options.enough_texts;
-  rules.least_fit = options.least_fit_by_texts;
+  rules.least_fit_by_texts = options.least_fit_by_texts;
   return decidePlace(frame, map.landmarks, scored(places.all(), frame, map.landmarks, options),
-                     rules, loop, whole);
+                     rules, whole);
 }
 
 }  // namespace parkade

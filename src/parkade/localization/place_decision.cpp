@@ -116,20 +116,24 @@ bool samePlace(const SE2& a, const SE2& b, double distance, double angle) {
          std::abs(wrapAngle(a.angle() - b.angle())) < angle;
 }
 
-LoopResult decidePlace(const SemanticFrame& frame, const Submap& submap,
-                       std::vector<PlaceCandidate> candidates, const PlaceRules& rules,
-                       const LoopOptions& loop, const RegistrationOptions& registration,
-                       const std::vector<Eigen::Vector3d>& viewpoints) {
-  LoopResult result;
+void sortByScore(std::vector<PlaceCandidate>& candidates) {
   std::stable_sort(
       candidates.begin(), candidates.end(),
       [](const PlaceCandidate& a, const PlaceCandidate& b) { return a.score > b.score; });
+}
+
+LoopResult decidePlace(const SemanticFrame& frame, const Submap& submap,
+                       std::vector<PlaceCandidate> candidates, const PlaceRules& rules,
+                       const RegistrationOptions& registration,
+                       const std::vector<Eigen::Vector3d>& viewpoints) {
+  LoopResult result;
+  sortByScore(candidates);
   // Refine the best of each place, and compare what they end as.
   const PlaceScorer fine(frame, submap, 0.08, 1);
   std::vector<SE2> tried;
   std::vector<PlaceCandidate> ends;
   for (const PlaceCandidate& c : candidates) {
-    if (static_cast<int>(tried.size()) >= loop.refined) break;
+    if (static_cast<int>(tried.size()) >= rules.refined) break;
     const bool near = std::any_of(tried.begin(), tried.end(), [&](const SE2& other) {
       return samePlace(c.T_map_vehicle, other, rules.spacing_m, rules.spacing_rad);
     });
@@ -162,9 +166,9 @@ LoopResult decidePlace(const SemanticFrame& frame, const Submap& submap,
     result.reason = texts.compared == 1 ? "a marker there has another text"
                                         : fmt::format("{} of {} markers there have another text",
                                                       texts.wrong, texts.compared);
-  } else if (result.score < (texts.suffice(rules) ? rules.least_fit : loop.least_fit)) {
+  } else if (result.score < (texts.suffice(rules) ? rules.least_fit_by_texts : rules.least_fit)) {
     result.reason = fmt::format("{:.0f} % fit", 100.0 * result.score);
-  } else if (result.second > loop.ambiguity * result.score) {
+  } else if (result.second > rules.ambiguity * result.score) {
     result.reason = fmt::format("ambiguous: {:.0f} % fit, and {:.0f} % at another place",
                                 100.0 * result.score, 100.0 * result.second);
   } else if (result.registration.observable < 3) {

@@ -6,37 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "parkade/core/options.hpp"
 #include "parkade/localization/registration.hpp"
 
 namespace parkade {
-
-struct LoopOptions {
-  double max_search_m = 4.0;
-  double step_m = 0.5;
-  double step_deg = 2.0;
-  double coarse_radius_m = 0.25;
-  int refined = 12;
-  double ambiguity = 0.8;
-  double least_fit = 0.5;
-
-  void visit(OptionVisitor& v) {
-    v.field(
-        "max_search_m", max_search_m, "m",
-        "Places farther from the expected one are not tried; a less certain pose closes no loop.",
-        0.5, 20.0);
-    v.field("step_m", step_m, "m", "Spacing of the places tried.", 0.1, 2.0);
-    v.field("step_deg", step_deg, "deg", "Spacing of the headings tried.", 0.1, 10.0);
-    v.field("coarse_radius_m", coarse_radius_m, "m",
-            "A line point counts for a place when its line is this near.", 0.05, 1.0);
-    v.field("refined", refined, "count", "Best places that are registered.", 1, 100);
-    v.field("ambiguity", ambiguity, "ratio",
-            "Another place that fits this well, compared with the best, makes the loop ambiguous.",
-            0.1, 1.0);
-    v.field("least_fit", least_fit, "ratio",
-            "Share of what is seen that has to be found in the map at the place told.", 0.05, 1.0);
-  }
-};
 
 /// What a search for the car in a map found.
 struct LoopResult {
@@ -76,15 +48,21 @@ struct PlaceCandidate {
 /// The poses are the same place: to within a distance (m) and an angle (rad).
 bool samePlace(const SE2& a, const SE2& b, double distance, double angle = 0.06);
 
-/// What makes two candidates one place, and what landmarks say of one.
+/// Best first; those that score alike stay in their order.
+void sortByScore(std::vector<PlaceCandidate>& candidates);
+
+/// How many places are looked at, what makes two of them one, and what speaks against one.
 struct PlaceRules {
+  int refined = 12;        ///< places that are registered
   double spacing_m = 0.5;  ///< nearer candidates are one place
   double spacing_rad = 0.06;
+  double ambiguity = 0.8;  ///< of the best score, that another place may not exceed
+  double least_fit = 0.5;
   double wrong_texts = 0.0;    ///< a place is refused where more of its texts are other ones
   bool texts_exclude = false;  ///< such places are no rivals either
-  /// Where so many texts agree (0: never), another least_fit holds.
+  /// Where so many texts agree (0: never), another least fit holds.
   int enough_texts = 0;
-  double least_fit = 0.5;
+  double least_fit_by_texts = 0.5;
   bool landmarks_first = false;  ///< they are laid on one another before lines are
 };
 
@@ -92,7 +70,7 @@ struct PlaceRules {
 /// another place fits as well, or where markers bear other texts.
 LoopResult decidePlace(const SemanticFrame& frame, const Submap& submap,
                        std::vector<PlaceCandidate> candidates, const PlaceRules& rules,
-                       const LoopOptions& loop, const RegistrationOptions& registration,
+                       const RegistrationOptions& registration,
                        const std::vector<Eigen::Vector3d>& viewpoints = {});
 
 }  // namespace parkade

@@ -93,9 +93,9 @@ void FusedMapper::Impl::searchSavedMap(const View& view) {
   // A second search, on what is partly new, has to say the same.
   const std::optional<SE2> before = std::exchange(saved->T_map_world, T_map_world);
   if (!before) return;
-  const SE2 off = T_map_vehicle.inverse() * *before * poseOf(view);
-  if (off.translation().norm() > o.agree_m || std::abs(off.angle()) > o.agree_deg * kDegree) return;
-  settleInSavedMap(found.registration, view);
+  if (samePlace(T_map_vehicle, *before * poseOf(view), o.agree_m, o.agree_deg * kDegree)) {
+    settleInSavedMap(found.registration, view);
+  }
 }
 
 void FusedMapper::Impl::rebase(const SE2& T_new_world, double dz) {
