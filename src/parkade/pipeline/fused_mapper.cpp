@@ -9,6 +9,8 @@
 
 #include "parkade/core/check.hpp"
 #include "parkade/core/units.hpp"
+#include "parkade/mapping/painted_arrows.hpp"
+#include "parkade/mapping/painted_crossings.hpp"
 #include "parkade/mapping/told_layers.hpp"
 #include "parkade/pipeline/fused_mapper_impl.hpp"
 
@@ -250,6 +252,8 @@ ParkingMap FusedMapper::map(const std::string& name) const {
   for (const StampedPose& pose : finalTrajectory()) way.push_back(SE2::fromSE3(pose.T_world_body));
   map.slots = m.slots.slots(m.last_t_ns, map.objects);
   completeLayers(m.wallPlaces(), way, m.options.global_map.evidence.range_m, map);
+  completeArrows(map);
+  completeCrossings(map);
   for (const Impl::Stretch& s : m.stretches) {
     map.nodes.push_back(
         {s.anchor, s.t_ns, liftPose(s.pose.T_world_vehicle, s.pose.z, s.T_odom_vehicle)});
