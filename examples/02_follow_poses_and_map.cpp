@@ -11,7 +11,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "parkade/mapping/map_file.hpp"
+#include "parkade/mapping/storage/map_file.hpp"
 #include "parkade/pipeline/mapping_run.hpp"
 #include "parkade/sim/drive/frame_renderer.hpp"
 

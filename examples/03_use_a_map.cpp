@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "parkade/mapping/map_file.hpp"
+#include "parkade/mapping/storage/map_file.hpp"
 
 namespace {
 

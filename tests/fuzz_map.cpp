@@ -16,11 +16,11 @@
 
 #include "parkade/core/random.hpp"
 #include "parkade/mapping/map_check.hpp"
-#include "parkade/mapping/map_drawing.hpp"
-#include "parkade/mapping/map_export.hpp"
-#include "parkade/mapping/map_file.hpp"
 #include "parkade/mapping/map_test_support.hpp"
-#include "parkade/mapping/sqlite.hpp"
+#include "parkade/mapping/storage/map_drawing.hpp"
+#include "parkade/mapping/storage/map_export.hpp"
+#include "parkade/mapping/storage/map_file.hpp"
+#include "parkade/mapping/storage/sqlite.hpp"
 
 namespace parkade {
 namespace {

@@ -14,7 +14,7 @@
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
 #include "parkade/io/trajectory_io.hpp"
-#include "parkade/mapping/map_file.hpp"
+#include "parkade/mapping/storage/map_file.hpp"
 
 namespace parkade::cli {
 namespace {

@@ -15,10 +15,10 @@
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
 #include "parkade/mapping/map_check.hpp"
-#include "parkade/mapping/map_drawing.hpp"
-#include "parkade/mapping/map_export.hpp"
-#include "parkade/mapping/map_file.hpp"
 #include "parkade/mapping/map_merge.hpp"
+#include "parkade/mapping/storage/map_drawing.hpp"
+#include "parkade/mapping/storage/map_export.hpp"
+#include "parkade/mapping/storage/map_file.hpp"
 
 namespace parkade::cli {
 namespace {

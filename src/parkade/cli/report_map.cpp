@@ -15,8 +15,8 @@
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
 #include "parkade/io/trajectory_io.hpp"
-#include "parkade/mapping/map_drawing.hpp"
-#include "parkade/mapping/map_file.hpp"
+#include "parkade/mapping/storage/map_drawing.hpp"
+#include "parkade/mapping/storage/map_file.hpp"
 #include "parkade/semantics/draw_labels.hpp"
 
 namespace parkade::cli {

@@ -10,7 +10,7 @@
 #include "parkade/geometry/se2.hpp"
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
-#include "parkade/mapping/map_drawing.hpp"
+#include "parkade/mapping/storage/map_drawing.hpp"
 #include "parkade/semantics/draw_labels.hpp"
 #include "parkade/semantics/draw_objects.hpp"
 #include "parkade/semantics/draw_slots.hpp"

@@ -21,7 +21,7 @@
 #include "parkade/core/options.hpp"
 #include "parkade/core/progress.hpp"
 #include "parkade/io/file.hpp"
-#include "parkade/mapping/map_file.hpp"
+#include "parkade/mapping/storage/map_file.hpp"
 #include "parkade/pipeline/mapping_run.hpp"
 
 namespace parkade::cli {

@@ -18,9 +18,9 @@
 #include "parkade/io/image_file.hpp"
 #include "parkade/io/pose_covariance_io.hpp"
 #include "parkade/io/trajectory_io.hpp"
-#include "parkade/mapping/map_drawing.hpp"
-#include "parkade/mapping/map_export.hpp"
-#include "parkade/mapping/map_file.hpp"
+#include "parkade/mapping/storage/map_drawing.hpp"
+#include "parkade/mapping/storage/map_export.hpp"
+#include "parkade/mapping/storage/map_file.hpp"
 #include "parkade/tracking/draw_tracks.hpp"
 
 namespace parkade::cli {

@@ -9,9 +9,9 @@
 
 #include "parkade/core/check.hpp"
 #include "parkade/core/units.hpp"
-#include "parkade/mapping/painted_arrows.hpp"
-#include "parkade/mapping/painted_crossings.hpp"
-#include "parkade/mapping/told_layers.hpp"
+#include "parkade/mapping/layers/told_layers.hpp"
+#include "parkade/mapping/objects/painted_arrows.hpp"
+#include "parkade/mapping/objects/painted_crossings.hpp"
 #include "parkade/pipeline/fused_mapper_impl.hpp"
 
 namespace parkade {

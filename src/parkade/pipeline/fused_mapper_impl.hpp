@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "parkade/fusion/pose_filter.hpp"
+#include "parkade/mapping/layers/wall_points.hpp"
 #include "parkade/mapping/submap.hpp"
-#include "parkade/mapping/wall_points.hpp"
 #include "parkade/pipeline/anchored_history.hpp"
 #include "parkade/pipeline/fused_mapper.hpp"
 

@@ -28,7 +28,7 @@ struct RaisedPointOptions {
 };
 
 /// Key points that surely lie above the floor and near the car: they show something upright
-/// (SmearFinder, mapping/wall_points.hpp).
+/// (SmearFinder, mapping/layers/wall_points.hpp).
 std::vector<RaisedPoint> raisedPoints(const std::vector<Landmark>& landmarks,
                                       const SE3& T_level_odom, const RaisedPointOptions& options);
 

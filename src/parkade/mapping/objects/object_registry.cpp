@@ -1,0 +1,251 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/mapping/objects/object_registry.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "parkade/mapping/frame_evidence.hpp"
+#include "parkade/mapping/map_check.hpp"
+
+namespace parkade {
+namespace {
+
+constexpr double kGate = 16.27;  // 99.9 % of chi-square, 3 degrees
+
+}  // namespace
+
+bool ObjectRegistry::Track::isUpright() const {
+  return roleOf(semantic_class) == LayerRole::kStructure;
+}
+
+bool ObjectRegistry::Track::isSign() const {
+  return semantic_class == SemanticClass::kGuideSign ||
+         semantic_class == SemanticClass::kSpeedLimitSign;
+}
+
+bool ObjectRegistry::compatible(const Track& track, SemanticClass c, const Eigen::Vector3d& p,
+                                double heading, bool has_heading) const {
+  if (track.semantic_class != c) return false;
+  if ((p - track.position).head<2>().norm() > options_.max_distance_m) return false;
+  if (!has_heading || track.heading.norm() == 0.0) return true;
+  // A pillar's faces carry the same text: only the one that looks the same way is the same marker.
+  const Eigen::Vector2d direction(std::cos(heading), std::sin(heading));
+  return direction.dot(track.heading) > 0.5 * track.heading.norm();
+}
+
+void ObjectRegistry::fuse(Track& track, const Eigen::Vector3d& p,
+                          const Eigen::Matrix3d& covariance) {
+  const Eigen::Matrix3d S = track.covariance + covariance;
+  const Eigen::Matrix3d K = S.llt().solve(track.covariance).transpose();
+  track.position += K * (p - track.position);
+  track.covariance = ((Eigen::Matrix3d::Identity() - K) * track.covariance).eval();
+  track.covariance = (0.5 * (track.covariance + track.covariance.transpose())).eval();
+}
+
+void ObjectRegistry::update(const std::vector<ObjectObservation>& observations,
+                            const SE2& T_world_vehicle, double z_vehicle, std::int64_t anchor,
+                            const BevLabels* labels, const std::vector<LevelView>& views) {
+  way_.add(T_world_vehicle.translation(), anchor);
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  R.topLeftCorner<2, 2>() = T_world_vehicle.rotationMatrix();
+  const double floor2 = options_.position_floor_m * options_.position_floor_m;
+  const double sigma2 = options_.association_sigma_m * options_.association_sigma_m;
+  std::vector<bool> used(tracks_.size(), false);
+  for (const ObjectObservation& o : observations) {
+    Eigen::Vector3d p;
+    p << T_world_vehicle * o.position.head<2>(), o.position.z() + z_vehicle;
+    const Eigen::Matrix3d covariance =
+        R * o.covariance * R.transpose() + floor2 * Eigen::Matrix3d::Identity();
+    const double heading = wrapAngle(o.heading + T_world_vehicle.angle());
+    const bool has_heading = o.sigma_heading > 0.0;
+    std::size_t best = tracks_.size();
+    double best_distance = kGate;
+    for (std::size_t i = 0; i < used.size(); ++i) {
+      if (used[i] || !compatible(tracks_[i], o.semantic_class, p, heading, has_heading)) continue;
+      const Eigen::Matrix3d S =
+          tracks_[i].covariance + covariance + sigma2 * Eigen::Matrix3d::Identity();
+      const Eigen::Vector3d d = p - tracks_[i].position;
+      const double distance = d.dot(S.llt().solve(d));
+      if (distance >= best_distance) continue;
+      best_distance = distance;
+      best = i;
+    }
+    if (best == tracks_.size()) {
+      Track track;
+      track.id = next_id_++;
+      track.anchor = anchor;
+      track.semantic_class = o.semantic_class;
+      track.position = p;
+      track.covariance = covariance;
+      tracks_.push_back(track);
+    } else {
+      used[best] = true;
+      fuse(tracks_[best], p, covariance);
+    }
+    Track& track = tracks_[best];
+    if (has_heading) {
+      const double weight = 1.0 / (o.sigma_heading * o.sigma_heading + 1e-4);
+      track.heading += weight * Eigen::Vector2d(std::cos(heading), std::sin(heading));
+    }
+    track.texts.add(o.text, o.confidence);
+    if (!o.outline.empty() && o.confidence >= track.outline_confidence) {
+      track.outline_confidence = o.confidence;
+      track.outline.clear();
+      for (const Eigen::Vector2d& q : o.outline) track.outline.push_back(T_world_vehicle * q);
+    }
+    ++track.observations;
+  }
+  if (labels != nullptr) look(*labels, T_world_vehicle, used);
+  for (const LevelView& view : views) {
+    lookAcross(view, T_world_vehicle);
+    lookUp(view, T_world_vehicle, z_vehicle);
+  }
+}
+
+void ObjectRegistry::mergeDuplicates() {
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    for (std::size_t j = tracks_.size() - 1; j > i; --j) {
+      Track& a = tracks_[i];
+      const Track& b = tracks_[j];
+      const double heading = std::atan2(b.heading.y(), b.heading.x());
+      if (!compatible(a, b.semantic_class, b.position, heading, b.heading.norm() > 0.0)) continue;
+      const Eigen::Vector3d d = b.position - a.position;
+      const double sigma2 = options_.association_sigma_m * options_.association_sigma_m;
+      const Eigen::Matrix3d S = a.covariance + b.covariance + sigma2 * Eigen::Matrix3d::Identity();
+      if (d.dot(S.llt().solve(d)) > kGate) continue;
+      fuse(a, b.position, b.covariance);
+      a.heading += b.heading;
+      a.texts.add(b.texts);
+      a.observations += b.observations;
+      a.existence.add(b.existence);
+      a.in_views.add(b.in_views);
+      a.votes.own += b.votes.own;
+      a.votes.rival += b.votes.rival;
+      a.votes.floor += b.votes.floor;
+      if (b.outline_confidence > a.outline_confidence) {
+        a.outline = b.outline;
+        a.outline_confidence = b.outline_confidence;
+      }
+      tracks_.erase(tracks_.begin() + static_cast<std::ptrdiff_t>(j));
+    }
+  }
+}
+
+void ObjectRegistry::moveWithAnchors(const std::function<SE2(std::int64_t)>& correction) {
+  way_.moveWithAnchors(correction);
+  for (Track& track : tracks_) {
+    const SE2 T = correction(track.anchor);
+    Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+    R.topLeftCorner<2, 2>() = T.rotationMatrix();
+    track.position.head<2>() = T * track.position.head<2>();
+    track.covariance = (R * track.covariance * R.transpose()).eval();
+    track.heading = T.rotationMatrix() * track.heading;
+    for (Eigen::Vector2d& q : track.outline) q = T * q;
+  }
+  mergeDuplicates();
+}
+
+void ObjectRegistry::raise(double dz) {
+  for (Track& track : tracks_) track.position.z() += dz;
+}
+
+double ObjectRegistry::existence(const Track& track) const {
+  const double l = track.existence.logOdds(track.isUpright() ? options_.upright : options_.paint);
+  if (track.semantic_class != SemanticClass::kPillar) return l;
+  return l + options_.pillar_views.logOdds(track.in_views);
+}
+
+bool ObjectRegistry::exists(const Track& track) const {
+  const bool followed = track.semantic_class == SemanticClass::kZoneMarker || track.isSign();
+  if (track.observations <
+      (followed ? options_.min_marker_observations : options_.min_observations)) {
+    return false;
+  }
+  if (track.semantic_class == SemanticClass::kZoneMarker && isPhantom(track)) return false;
+  if (viewed_ && track.isSign()) {
+    const ViewExistenceOptions& o = options_.sign_views;
+    if (track.in_views.hits < o.min_hits || o.logOdds(track.in_views) <= 0.0) {
+      return false;
+    }
+  }
+  if (viewed_ && track.semantic_class == SemanticClass::kPillar &&
+      track.in_views.hits < options_.pillar_views.min_hits) {
+    return false;
+  }
+  if (!sighted_ || track.outline.empty()) return true;
+  const double looks_alike = track.votes.own + track.votes.rival;
+  return existence(track) > 0.0 && track.votes.own >= options_.min_own_share * looks_alike;
+}
+
+// Who passes a marker sees it from many places. One that was measured once all the same, where no
+// pillar is, was put together from bearings to different ones.
+bool ObjectRegistry::isPhantom(const Track& marker) const {
+  constexpr double kPillarNear = 1.5;  // m
+  if (marker.observations > 1) return false;
+  const Eigen::Vector2d p = marker.position.head<2>();
+  if (!way_.passed(p, options_.marker_reach_m)) return false;
+  return std::none_of(tracks_.begin(), tracks_.end(), [&](const Track& track) {
+    return track.semantic_class == SemanticClass::kPillar &&
+           (track.position.head<2>() - p).norm() < kPillarNear && exists(track);
+  });
+}
+
+std::vector<MapObject> ObjectRegistry::objects() const {
+  std::vector<const Track*> order;
+  for (const Track& track : tracks_) {
+    if (exists(track)) order.push_back(&track);
+  }
+  const auto rank = [this](const Track* track) {
+    return track->semantic_class == SemanticClass::kZoneMarker
+               ? static_cast<double>(track->observations)
+               : existence(*track);
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](const Track* a, const Track* b) { return rank(a) > rank(b); });
+  std::vector<const Track*> told;
+  for (const Track* track : order) {
+    // Pillars stand farther apart; what lies that near behind one is its smear, and a marker that
+    // bears the same text the same one, misplaced.
+    constexpr double kPillarSpacing = 2.0;  // m
+    const std::string text =
+        track->semantic_class == SemanticClass::kZoneMarker ? track->texts.best() : std::string();
+    const bool taken = std::any_of(told.begin(), told.end(), [&](const Track* other) {
+      if (other->semantic_class != track->semantic_class) return false;
+      const double distance = (other->position - track->position).head<2>().norm();
+      return overlapShare(other->outline, track->outline) > options_.duplicate_overlap ||
+             (track->semantic_class == SemanticClass::kPillar && sighted_ &&
+              distance < kPillarSpacing) ||
+             (!text.empty() && distance < kPillarSpacing && other->texts.best() == text);
+    });
+    if (!taken) told.push_back(track);
+  }
+  std::stable_sort(told.begin(), told.end(),
+                   [](const Track* a, const Track* b) { return a->id < b->id; });
+  TextFormat format;
+  for (const Track* track : told) {
+    if (track->semantic_class != SemanticClass::kZoneMarker) continue;
+    const std::string text = track->texts.best();
+    if (!text.empty()) format.add(text);
+  }
+  std::vector<MapObject> result;
+  for (const Track* one : told) {
+    const Track& track = *one;
+    MapObject object;
+    object.id = track.id;
+    object.semantic_class = track.semantic_class;
+    object.position = track.position;
+    object.heading =
+        track.heading.norm() > 0.0 ? std::atan2(track.heading.y(), track.heading.x()) : 0.0;
+    object.position_sigma = std::sqrt(std::max(0.0, track.covariance.trace() / 3.0));
+    object.text = track.semantic_class == SemanticClass::kZoneMarker ? track.texts.best(format)
+                                                                     : track.texts.best();
+    object.outline = track.outline;
+    object.observations = track.observations;
+    result.push_back(std::move(object));
+  }
+  return result;
+}
+
+}  // namespace parkade

@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What the map as a whole says for and against slots.
+#include <gtest/gtest.h>
+
+#include "parkade/mapping/slots/row_completion.hpp"
+#include "parkade/mapping/slots/row_test_support.hpp"
+
+namespace parkade {
+namespace {
+
+using Eigen::Vector2d;
+
+using testing::expectAt;
+using testing::Garage;
+using testing::kBay;
+using testing::kDepth;
+
+// Tells a clear row, and apart from it a slot that few pictures told.
+MapSlot tellOneRarelySeen(Garage& garage) {
+  garage.tell(0, {0, 1, 2});
+  garage.paintTold();
+  MapSlot slot = Garage::slotAt(2, 1);
+  slot.observations = 5;
+  garage.told.push_back(slot);
+  return slot;
+}
+
+// Few pictures may take a lane's edge for a slot's side, and nothing for the other one.
+TEST(SlotDoubts, AFreeSlotSeenRarelyMustShowBothSides) {
+  Garage garage;
+  const MapSlot slot = tellOneRarelySeen(garage);
+  garage.fill(GridLayer::kParkingLines, SemanticClass::kSlotLine,
+              slot.corners[0] - Vector2d(0.05, 0.0), slot.corners[3] + Vector2d(0.05, 0.0));
+  EXPECT_EQ(garage.complete().replaced, std::vector<std::int64_t>{slot.id});
+  {
+    Garage hidden = garage;
+    hidden.park(slot);
+    EXPECT_TRUE(hidden.complete().replaced.empty());
+  }
+  {
+    Garage seen_often = garage;
+    seen_often.told.back().observations = 20;
+    EXPECT_TRUE(seen_often.complete().replaced.empty());
+  }
+  garage.paint(slot);
+  EXPECT_TRUE(garage.complete().replaced.empty());
+}
+
+TEST(SlotDoubts, WhereThePaintIsWornABareSideSaysLittle) {
+  Garage garage;
+  tellOneRarelySeen(garage);
+  for (double y = 0.0; y < kDepth; y += 1.0) {  // half of every side
+    garage.fill(GridLayer::kParkingLines, SemanticClass::kFloor, {-1.0, y}, {kBay, y + 0.5});
+  }
+  EXPECT_TRUE(garage.complete().replaced.empty());
+}
+
+TEST(SlotDoubts, AFewPicturesDoNotOutweighAnArrow) {
+  Garage garage;
+  const MapSlot slot = tellOneRarelySeen(garage);
+  garage.paint(slot);
+  garage.fill(GridLayer::kRoadMarkers, SemanticClass::kArrow, slot.corners[0] + Vector2d(1.1, 1.0),
+              slot.corners[0] + Vector2d(1.4, 3.0));
+  EXPECT_EQ(garage.complete().replaced, std::vector<std::int64_t>{slot.id});
+}
+
+// One line of the next slot is not enough, but numbers are painted in slots alone.
+TEST(SlotDoubts, APaintedNumberSpeaksForASlot) {
+  for (const bool has_number : {false, true}) {
+    Garage garage;
+    garage.tell(0, {0, 1, 2});
+    garage.tell(1, {0, 1});
+    garage.paintTold();
+    for (const MapSlot& slot : garage.told) garage.number(slot);
+    const MapSlot last = Garage::slotAt(1, 2);
+    if (has_number) garage.number(last);
+    const RowCompletion rows = garage.complete();
+    ASSERT_EQ(rows.added.size(), has_number ? 1U : 0U);
+    if (has_number) expectAt(rows.added[0], last);
+  }
+}
+
+// Every car of a bay between two others stands in a slot; one that waits beyond them may not.
+TEST(SlotDoubts, CarsOfABayBetweenTwoOthersCountEach) {
+  Garage garage;
+  garage.tell(0, {0, 1, 2});
+  garage.tell(2, {0, 1, 2});
+  garage.paintTold();
+  for (int place = 0; place < 3; ++place) garage.park(Garage::slotAt(1, place));
+  EXPECT_EQ(garage.complete().added.size(), 3U);
+}
+
+// Two slots read as one along the aisle, their neighbours not told either.
+TEST(SlotDoubts, AMisfitNeedNotTouchItsRow) {
+  Garage garage;
+  garage.tell(0, {0, 1, 2});
+  garage.tell(2, {0, 1, 2});
+  garage.paintTold();
+  for (int place = 0; place < 3; ++place) garage.paint(Garage::slotAt(1, place));
+  MapSlot along = Garage::slotAt(1, 0);
+  along.id = 99;
+  along.shape = SlotShape::kParallel;
+  along.observations = 11;
+  const double x = along.corners[0].x() + 0.8;
+  along.corners = {Vector2d(x, 0.0), Vector2d(x + 5.8, 0.0), Vector2d(x + 5.8, 2.2),
+                   Vector2d(x, 2.2)};
+  garage.told.push_back(along);
+  const RowCompletion rows = garage.complete();
+  EXPECT_EQ(rows.replaced, std::vector<std::int64_t>{99});
+  EXPECT_EQ(rows.added.size(), 3U);
+}
+
+}  // namespace
+}  // namespace parkade

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "parkade/mapping/parking_map.hpp"
+#include "parkade/mapping/slots/row_evidence.hpp"
+
+namespace parkade::slot_rows {
+
+/// What the layers' evidence says for there being a slot, as log-odds. How many of its lines a slot
+/// shows is learnt from the slots that pictures told. docs/math/slots.md, equations (4) to (6).
+class SlotLikelihood {
+ public:
+  /// Of a slot that was told.
+  void learn(const SlotEvidence& evidence);
+
+  [[nodiscard]] double side(const SlotEvidence::Line& line) const;
+  [[nodiscard]] double entrance(const SlotEvidence::Line& line) const;
+  [[nodiscard]] static double vehicle(const SlotEvidence& evidence);
+  /// Of a number painted in it; 0 where there is none, cars may hide it.
+  [[nodiscard]] double number(const SlotEvidence& evidence) const;
+  /// Of a wheel stop in it, likewise.
+  [[nodiscard]] double stop(const SlotEvidence& evidence) const;
+  /// Of all that there is of a slot alone.
+  [[nodiscard]] double whole(const SlotEvidence& evidence) const;
+  /// Whether the slot would be free and in plain sight, and one of its sides is bare all the same.
+  /// Never where the paint of the slots told is worn, nor where a number or a wheel stop is in it.
+  [[nodiscard]] bool lacksSide(const SlotEvidence& evidence) const;
+
+ private:
+  struct Lines {
+    int all = 0;
+    int shown = 0;
+    double contrast = 0.0;  // sum
+    void add(const SlotEvidence::Line& line);
+    [[nodiscard]] double logOdds(const SlotEvidence::Line& line) const;
+  };
+  Lines sides_;
+  Lines entrances_;
+  int slots_ = 0;
+  int numbered_ = 0;
+  int with_stop_ = 0;
+};
+
+/// Whether the layers deny a slot: markings for who drives, lane lines, other lines, a sign
+/// that is not in its middle or something that stands in it.
+bool isDenied(const SlotEvidence& evidence);
+
+/// Free or occupied, by the vehicles that the layers show in it; untouched where too little is
+/// seen.
+void setFree(const SlotEvidence& evidence, MapSlot& slot);
+
+}  // namespace parkade::slot_rows

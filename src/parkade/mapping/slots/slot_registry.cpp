@@ -1,0 +1,334 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/mapping/slots/slot_registry.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "parkade/mapping/map_check.hpp"
+#include "parkade/mapping/slots/bay_numbers.hpp"
+#include "parkade/mapping/slots/row_completion.hpp"
+#include "parkade/mapping/slots/slot_numbers.hpp"
+#include "parkade/mapping/slots/slot_plausibility.hpp"
+#include "parkade/mapping/slots/slot_track.hpp"
+#include "parkade/mapping/votes.hpp"
+
+namespace parkade {
+
+using slot_registry::areOne;
+using slot_registry::Corners;
+using slot_registry::logOdds;
+using slot_registry::Matrix4;
+using slot_registry::mayBeSame;
+using slot_registry::merged;
+using slot_registry::Seen;
+using slot_registry::SlotNumber;
+using slot_registry::SlotNumbers;
+using slot_registry::toWorld;
+using slot_registry::Track;
+using slot_registry::Vector4;
+
+struct SlotRegistry::Impl {
+  SlotRegistryOptions options;
+  std::vector<Track> tracks;  // ordered by id
+  std::int64_t next_id = 1;
+  struct Place {
+    Eigen::Vector2d p;
+    std::int64_t anchor;
+  };
+  std::vector<Place> way;              // of the vehicle's origin
+  std::vector<MapSlot> of_rows;        // that the rows have beside the tracks
+  std::vector<std::int64_t> replaced;  // tracks in whose places those lie
+  SlotNumbers numbers;
+
+  explicit Impl(const SlotRegistryOptions& given)
+      : options(given), numbers(given.min_number_readings, given.number_confidence) {}
+  [[nodiscard]] double fadedLogOdds(const Track& track, TimeNs now_ns) const {
+    const double seconds = std::max(0.0, toSeconds(now_ns - track.availability_ns));
+    return track.log_odds_free * std::exp(-seconds / options.change_time_s);
+  }
+  void fuse(Track& track, const Seen& seen, TimeNs t_ns) const;
+  void add(const Seen& seen, TimeNs t_ns, std::int64_t anchor);
+  void countMisses(const SE2& T_world_vehicle, const std::vector<bool>& was_seen,
+                   std::size_t old_count);
+  void forgetOdd();
+  void mergeDuplicates();
+  [[nodiscard]] std::vector<const Track*> distinct() const;
+  [[nodiscard]] std::vector<Eigen::Vector2d> drivenWay() const {
+    std::vector<Eigen::Vector2d> driven;
+    for (const Place& place : way) driven.push_back(place.p);
+    return driven;
+  }
+  [[nodiscard]] bool isPlausible(const MapSlot& slot, const std::vector<MapObject>& objects,
+                                 const std::vector<Eigen::Vector2d>& driven) const;
+  [[nodiscard]] std::vector<MapSlot> seenSlots(TimeNs now_ns,
+                                               const std::vector<MapObject>& objects) const;
+  [[nodiscard]] bool told(const Track& track) const {
+    // Seen rarely while in plain sight: something else.
+    return track.observations >= options.min_observations &&
+           track.misses <= 3 * track.observations + 5;
+  }
+};
+
+void SlotRegistry::Impl::fuse(Track& track, const Seen& seen, TimeNs t_ns) const {
+  const Matrix4 S = track.covariance + seen.covariance;
+  const Matrix4 K = S.llt().solve(track.covariance).transpose();
+  track.entrance += K * (seen.entrance - track.entrance);
+  track.covariance = ((Matrix4::Identity() - K) * track.covariance).eval();
+  track.covariance = (0.5 * (track.covariance + track.covariance.transpose())).eval();
+  constexpr double kGuess = 0.05;  // weight of rear corners that were completed, not seen
+  const double weight = seen.source->rear_seen ? 1.0 : kGuess;
+  const double share = weight / (track.rear_weight + weight);
+  track.rear_left += share * (seen.rear_left - track.rear_left);
+  track.rear_right += share * (seen.rear_right - track.rear_right);
+  track.rear_weight += weight;
+  constexpr double kLimit = 5.0;
+  track.log_odds_free =
+      std::clamp(fadedLogOdds(track, t_ns) +
+                     options.availability_gain * logOdds(seen.source->probability_free),
+                 -kLimit, kLimit);
+  track.availability_ns = t_ns;
+  track.last_seen_ns = t_ns;
+  ++track.observations;
+  track.confidence += seen.source->confidence;
+  track.shapes[static_cast<std::size_t>(seen.source->shape)] += seen.source->confidence;
+}
+
+void SlotRegistry::Impl::add(const Seen& seen, TimeNs t_ns, std::int64_t anchor) {
+  Track track;
+  track.id = next_id++;
+  track.anchor = anchor;
+  track.entrance = seen.entrance;
+  track.covariance = seen.covariance;
+  track.rear_left = seen.rear_left;
+  track.rear_right = seen.rear_right;
+  track.availability_ns = t_ns;
+  tracks.push_back(track);
+  Track& added = tracks.back();
+  const Matrix4 own = added.covariance;
+  fuse(added, seen, t_ns);
+  added.covariance = own;  // one observation counts once
+}
+
+void SlotRegistry::Impl::countMisses(const SE2& T_world_vehicle, const std::vector<bool>& was_seen,
+                                     std::size_t old_count) {
+  for (std::size_t i = 0; i < old_count; ++i) {
+    constexpr double kPlainSight = 4.0;
+    const Eigen::Vector2d from = T_world_vehicle.inverse() * tracks[i].middle();
+    if (!was_seen[i] && from.norm() < kPlainSight) ++tracks[i].misses;
+  }
+}
+
+// What was seen once and then not again while in plain sight, on a slot that is known better.
+void SlotRegistry::Impl::forgetOdd() {
+  constexpr int kMisses = 5;
+  const auto odd = [&](const Track& track) {
+    return track.observations == 1 && track.misses >= kMisses;
+  };
+  tracks.erase(std::remove_if(tracks.begin(), tracks.end(), odd), tracks.end());
+}
+
+// Those told, ordered by id; of several on one place the one that explains more of what was seen.
+std::vector<const Track*> SlotRegistry::Impl::distinct() const {
+  std::vector<const Track*> order;
+  for (const Track& track : tracks) {
+    if (told(track)) order.push_back(&track);
+  }
+  const auto merit = [](const Track* track) {
+    return track->confidence - 0.5 * static_cast<double>(track->misses);
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](const Track* a, const Track* b) { return merit(a) > merit(b); });
+  constexpr double kLargest = 8.0;  // m
+  std::vector<const Track*> chosen;
+  for (const Track* track : order) {
+    const bool taken = std::any_of(chosen.begin(), chosen.end(), [&](const Track* other) {
+      return (track->centre() - other->centre()).norm() < kLargest &&
+             overlapShare(track->corners(), other->corners()) > options.duplicate_overlap;
+    });
+    if (!taken) chosen.push_back(track);
+  }
+  std::sort(chosen.begin(), chosen.end(),
+            [](const Track* a, const Track* b) { return a->id < b->id; });
+  return chosen;
+}
+
+void SlotRegistry::Impl::mergeDuplicates() {
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    for (std::size_t j = tracks.size() - 1; j > i; --j) {
+      if (!areOne(tracks[i], tracks[j], options.duplicate_overlap)) continue;
+      tracks[i] = merged(std::move(tracks[i]), std::move(tracks[j]));
+      tracks.erase(tracks.begin() + static_cast<std::ptrdiff_t>(j));
+    }
+  }
+}
+
+SlotRegistry::SlotRegistry(const SlotRegistryOptions& options)
+    : impl_(std::make_unique<Impl>(options)) {}
+SlotRegistry::~SlotRegistry() = default;
+SlotRegistry::SlotRegistry(SlotRegistry&&) noexcept = default;
+SlotRegistry& SlotRegistry::operator=(SlotRegistry&&) noexcept = default;
+
+void SlotRegistry::update(const std::vector<SlotObservation>& observations, TimeNs t_ns,
+                          const SE2& T_world_vehicle, std::int64_t anchor) {
+  Impl& m = *impl_;
+  constexpr double kStep = 0.1;  // m
+  const Eigen::Vector2d place = T_world_vehicle.translation();
+  if (m.way.empty() || (place - m.way.back().p).norm() >= kStep) m.way.push_back({place, anchor});
+  struct Pair {
+    double distance;
+    std::size_t track;
+    std::size_t seen;
+  };
+  std::vector<Seen> all;
+  for (const SlotObservation& o : observations) {
+    if (!o.number.empty()) m.numbers.add(o.number, T_world_vehicle * o.number_place, anchor);
+    all.push_back(toWorld(o, T_world_vehicle, m.options.corner_floor_m));
+  }
+  const double sigma2 = m.options.association_sigma_m * m.options.association_sigma_m;
+  // Chi-square of 4 degrees by its normal form; the registry may not see the filter's table.
+  const double gate = chiSquareGate4(m.options.gate_probability);
+  std::vector<Pair> pairs;
+  for (std::size_t j = 0; j < all.size(); ++j) {
+    for (std::size_t i = 0; i < m.tracks.size(); ++i) {
+      if (!mayBeSame(m.tracks[i], all[j])) continue;
+      const Matrix4 S = m.tracks[i].covariance + all[j].covariance + sigma2 * Matrix4::Identity();
+      const Vector4 d = all[j].entrance - m.tracks[i].entrance;
+      const double distance = d.dot(S.llt().solve(d));
+      if (distance < gate) pairs.push_back({distance, i, j});
+    }
+  }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
+  const std::size_t old_count = m.tracks.size();
+  std::vector<bool> track_used(old_count, false);
+  std::vector<bool> seen_used(all.size(), false);
+  for (const Pair& pair : pairs) {
+    if (track_used[pair.track] || seen_used[pair.seen]) continue;
+    track_used[pair.track] = true;
+    seen_used[pair.seen] = true;
+    m.fuse(m.tracks[pair.track], all[pair.seen], t_ns);
+  }
+  // What lies on a known slot may be that slot seen badly, or the other way round: both are kept
+  // until slots() has to choose.
+  for (std::size_t j = 0; j < all.size(); ++j) {
+    if (!seen_used[j]) m.add(all[j], t_ns, anchor);
+  }
+  m.countMisses(T_world_vehicle, track_used, old_count);
+  m.forgetOdd();
+}
+
+void SlotRegistry::moveWithAnchors(const std::function<SE2(std::int64_t)>& correction) {
+  for (Track& track : impl_->tracks) {
+    const SE2 T = correction(track.anchor);
+    const Eigen::Matrix2d R = T.rotationMatrix();
+    const Eigen::Vector2d left = T * track.entrance.head<2>();
+    const Eigen::Vector2d right = T * track.entrance.tail<2>();
+    track.entrance << left, right;
+    track.rear_left = R * track.rear_left;
+    track.rear_right = R * track.rear_right;
+    Matrix4 turn = Matrix4::Zero();
+    turn.topLeftCorner<2, 2>() = R;
+    turn.bottomRightCorner<2, 2>() = R;
+    track.covariance = (turn * track.covariance * turn.transpose()).eval();
+  }
+  for (Impl::Place& place : impl_->way) place.p = correction(place.anchor) * place.p;
+  impl_->numbers.moveWithAnchors(correction);
+  impl_->of_rows.clear();
+  impl_->replaced.clear();
+  impl_->mergeDuplicates();
+}
+
+int SlotRegistry::candidates() const {
+  return static_cast<int>(impl_->tracks.size());
+}
+
+bool SlotRegistry::Impl::isPlausible(const MapSlot& slot, const std::vector<MapObject>& objects,
+                                     const std::vector<Eigen::Vector2d>& driven) const {
+  return !drivenThrough(slot.corners, driven) && !holdsRoadMarking(slot.corners, objects) &&
+         !holdsPillar(slot.corners, objects, slot.observations);
+}
+
+std::vector<MapSlot> SlotRegistry::Impl::seenSlots(TimeNs now_ns,
+                                                   const std::vector<MapObject>& objects) const {
+  const std::vector<Eigen::Vector2d> driven = drivenWay();
+  std::vector<MapSlot> seen;
+  for (const Track* track : distinct()) {
+    if (std::find(replaced.begin(), replaced.end(), track->id) != replaced.end()) continue;
+    MapSlot slot;
+    slot.id = track->id;
+    slot.corners = track->corners();
+    slot.corner_sigma = std::sqrt(std::max(0.0, track->covariance.trace() / 4.0));
+    slot.shape = static_cast<SlotShape>(
+        std::max_element(track->shapes.begin(), track->shapes.end()) - track->shapes.begin());
+    slot.probability_free = 1.0 / (1.0 + std::exp(-fadedLogOdds(*track, now_ns)));
+    slot.observations = track->observations;
+    slot.last_seen_ns = track->last_seen_ns;
+    if (isPlausible(slot, objects, driven)) seen.push_back(std::move(slot));
+  }
+  return seen;
+}
+
+void SlotRegistry::completeRows(TimeNs now_ns, const std::vector<MapObject>& objects,
+                                const LayeredGrid& grid) {
+  Impl& m = *impl_;
+  const std::vector<Eigen::Vector2d> driven = m.drivenWay();
+  const std::vector<MapSlot> before = std::exchange(m.of_rows, {});
+  m.replaced.clear();
+  RowCompletion rows =
+      parkade::completeRows(m.seenSlots(now_ns, objects), objects, grid, m.options.rows);
+  m.replaced = std::move(rows.replaced);
+  for (MapSlot& slot : rows.added) {
+    if (!m.isPlausible(slot, objects, driven)) {
+      std::erase(m.replaced, slot.id);  // what was told and cannot be moved stays as it is
+      continue;
+    }
+    const auto same = std::find_if(before.begin(), before.end(), [&](const MapSlot& other) {
+      constexpr double kSame = 0.5;
+      return overlapShare(slot.corners, other.corners) > kSame;
+    });
+    if (slot.id == 0) slot.id = same != before.end() ? same->id : m.next_id++;
+    m.of_rows.push_back(slot);
+  }
+}
+
+std::vector<MapSlot> SlotRegistry::slots(TimeNs now_ns,
+                                         const std::vector<MapObject>& objects) const {
+  std::vector<MapSlot> result = impl_->seenSlots(now_ns, objects);
+  for (const MapSlot& slot : impl_->of_rows) {
+    const auto taken = [&](const MapSlot& other) {
+      return overlapShare(slot.corners, other.corners) > impl_->options.duplicate_overlap;
+    };
+    if (std::none_of(result.begin(), result.end(), taken)) result.push_back(slot);
+  }
+  std::sort(result.begin(), result.end(),
+            [](const MapSlot& a, const MapSlot& b) { return a.id < b.id; });
+  std::vector<std::optional<SlotNumber>> numbers;
+  for (MapSlot& slot : result) {
+    numbers.push_back(impl_->numbers.within(slot.corners));
+    const Corners& c = slot.corners;
+    const Eigen::Vector2d centre = 0.25 * (c[0] + c[1] + c[2] + c[3]);
+    double nearest = impl_->options.zone_range_m;
+    for (const MapObject& object : objects) {
+      if (object.semantic_class != SemanticClass::kZoneMarker || object.text.empty()) continue;
+      const double distance = (object.position.head<2>() - centre).norm();
+      if (distance >= nearest) continue;
+      nearest = distance;
+      slot.zone = object.text;
+    }
+  }
+  keepSurestNumbers(numbers);
+  std::vector<double> support(result.size(), 0.0);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    if (!numbers[i]) continue;
+    result[i].number = numbers[i]->text;
+    support[i] = numbers[i]->support;
+  }
+  slot_registry::numberBays(result, support);
+  return result;
+}
+
+}  // namespace parkade

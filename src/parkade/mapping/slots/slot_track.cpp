@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/mapping/slots/slot_track.hpp"
+
+#include <Eigen/Cholesky>
+#include <utility>
+
+#include "parkade/mapping/map_check.hpp"
+
+namespace parkade::slot_registry {
+
+Seen toWorld(const SlotObservation& o, const SE2& T, double floor) {
+  Seen seen;
+  seen.source = &o;
+  const Eigen::Vector2d left = T * o.corners[0];
+  const Eigen::Vector2d right = T * o.corners[1];
+  seen.entrance << left, right;
+  seen.rear_right = T * o.corners[2] - right;
+  seen.rear_left = T * o.corners[3] - left;
+  Matrix4 R = Matrix4::Zero();
+  R.topLeftCorner<2, 2>() = T.rotationMatrix();
+  R.bottomRightCorner<2, 2>() = T.rotationMatrix();
+  seen.covariance = R * o.entrance_covariance * R.transpose() + floor * floor * Matrix4::Identity();
+  return seen;
+}
+
+bool mayBeSame(const Track& track, const Seen& seen) {
+  const Eigen::Vector2d a = track.entrance.tail<2>() - track.entrance.head<2>();
+  const Eigen::Vector2d b = seen.entrance.tail<2>() - seen.entrance.head<2>();
+  constexpr double kCosine = 0.906;
+  if (a.dot(b) < kCosine * a.norm() * b.norm()) return false;
+  const Eigen::Vector2d middle = 0.5 * (seen.entrance.head<2>() + seen.entrance.tail<2>());
+  return (middle - track.middle()).norm() < 0.45 * std::min(a.norm(), b.norm());
+}
+
+bool areOne(const Track& a, const Track& b, double duplicate_overlap) {
+  constexpr double kFar = 6.0;   // m
+  constexpr double kSame = 0.6;  // m, corners of one entrance
+  if ((a.middle() - b.middle()).norm() > kFar) return false;
+  if (overlapShare(a.corners(), b.corners()) < duplicate_overlap) return false;
+  // Another reading of the place stays one: the registry weighs them.
+  const Vector4 d = b.entrance - a.entrance;
+  return d.head<2>().norm() <= kSame && d.tail<2>().norm() <= kSame;
+}
+
+Track merged(Track first, Track second) {
+  const std::int64_t id = first.id;
+  if (second.observations > first.observations) std::swap(first, second);
+  first.id = id;
+  const Eigen::Vector2d a = first.entrance.tail<2>() - first.entrance.head<2>();
+  const Eigen::Vector2d b = second.entrance.tail<2>() - second.entrance.head<2>();
+  if (a.dot(b) > 0.9 * a.norm() * b.norm()) {
+    const Matrix4 K =
+        (first.covariance + second.covariance).llt().solve(first.covariance).transpose();
+    first.entrance += K * (second.entrance - first.entrance);
+    first.covariance = ((Matrix4::Identity() - K) * first.covariance).eval();
+    first.covariance = (0.5 * (first.covariance + first.covariance.transpose())).eval();
+  }
+  if (second.availability_ns > first.availability_ns) {
+    first.log_odds_free = second.log_odds_free;
+    first.availability_ns = second.availability_ns;
+  }
+  first.last_seen_ns = std::max(first.last_seen_ns, second.last_seen_ns);
+  first.observations += second.observations;
+  first.misses += second.misses;
+  first.confidence += second.confidence;
+  for (std::size_t k = 0; k < first.shapes.size(); ++k) first.shapes[k] += second.shapes[k];
+  return first;
+}
+
+}  // namespace parkade::slot_registry

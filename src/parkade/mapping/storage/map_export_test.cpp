@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/mapping/storage/map_export.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "parkade/mapping/map_test_support.hpp"
+
+namespace parkade {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::sampleMap;
+
+std::string folder() {
+  const std::string path = ::testing::TempDir() + "parkade_export";
+  std::filesystem::create_directories(path);
+  return path;
+}
+
+std::string contentOf(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST(MapExport, Nav2PictureHasTheCellsWhereTheYamlSays) {
+  ParkingMap map;
+  map.grid.add(GridLayer::kParkingLines, {1.02, 2.02}, SemanticClass::kSlotLine, 2.0F);
+  map.grid.add(GridLayer::kParkingLines, {1.12, 2.12}, SemanticClass::kFloor, 2.0F);
+  ASSERT_TRUE(exportNav2(map, GridLayer::kParkingLines, folder()));
+  const std::string pgm = contentOf(folder() + "/parking_lines.pgm");
+  ASSERT_THAT(pgm, ::testing::StartsWith("P5\n3 3\n255\n"));
+  const std::string cells = pgm.substr(pgm.size() - 9);
+  // Row 0 is the far side (largest y): the free cell at the right; the line is bottom left.
+  EXPECT_EQ(static_cast<unsigned char>(cells[2]), 254);
+  EXPECT_EQ(static_cast<unsigned char>(cells[6]), 0);
+  EXPECT_EQ(static_cast<unsigned char>(cells[4]), 205);
+  const std::string yaml = contentOf(folder() + "/parking_lines.yaml");
+  EXPECT_THAT(yaml, HasSubstr("origin: [1, 2, 0.0]"));
+  EXPECT_THAT(yaml, HasSubstr("resolution: 0.05"));
+}
+
+TEST(MapExport, EmptyMapGivesOneUnknownCell) {
+  ASSERT_TRUE(exportNav2(ParkingMap(), GridLayer::kDynamic, folder()));
+  EXPECT_THAT(contentOf(folder() + "/dynamic.pgm"), ::testing::StartsWith("P5\n1 1\n"));
+}
+
+TEST(MapExport, GeoJsonHasClosedCounterClockwiseRings) {
+  const ParkingMap map = sampleMap();
+  const std::string path = folder() + "/map.geojson";
+  ASSERT_TRUE(exportGeoJson(map, path));
+  const nlohmann::json document = nlohmann::json::parse(contentOf(path));
+  ASSERT_EQ(document["features"].size(), map.slots.size() + map.objects.size());
+  EXPECT_EQ(document["coordinate_reference"]["unit"], "metre");
+  const auto ring = document["features"][0]["geometry"]["coordinates"][0];
+  ASSERT_EQ(ring.size(), 5U);
+  EXPECT_EQ(ring.front(), ring.back());
+  double twice_area = 0.0;
+  for (std::size_t i = 0; i + 1 < ring.size(); ++i) {
+    twice_area += ring[i][0].get<double>() * ring[i + 1][1].get<double>() -
+                  ring[i + 1][0].get<double>() * ring[i][1].get<double>();
+  }
+  EXPECT_NEAR(twice_area, 2.0 * 12.5, 1e-9);
+  EXPECT_EQ(document["features"][0]["properties"]["kind"], "parking_space");
+}
+
+TEST(MapExport, Lanelet2HasASpacePerSlotFromAisleToRear) {
+  const ParkingMap map = sampleMap();
+  const std::string path = folder() + "/map.osm";
+  ASSERT_TRUE(exportLanelet2(map, path));
+  const std::string osm = contentOf(path);
+  std::size_t spaces = 0;
+  for (std::size_t at = osm.find("parking_space"); at != std::string::npos;
+       at = osm.find("parking_space", at + 1)) {
+    ++spaces;
+  }
+  EXPECT_EQ(spaces, map.slots.size());
+  EXPECT_THAT(osm, HasSubstr("<tag k=\"width\" v=\"2.500\"/>"));
+  EXPECT_THAT(osm, HasSubstr("<tag k=\"type\" v=\"parking_lot\"/>"));
+  // The first slot's way starts at the middle of its entrance.
+  EXPECT_THAT(osm.substr(0, 400), HasSubstr("<tag k=\"local_x\" v=\"1.2500\"/>"));
+  EXPECT_THAT(osm.substr(0, 400), HasSubstr("<tag k=\"local_y\" v=\"3.0000\"/>"));
+}
+
+TEST(MapExport, UnwritableFolderIsNamed) {
+  const Status status = exportGeoJson(sampleMap(), "/nowhere/map.geojson");
+  ASSERT_FALSE(status);
+  EXPECT_THAT(status.error().message, HasSubstr("/nowhere/map.geojson"));
+}
+
+TEST(MapExport, MapOfAbsurdExtentIsRefused) {
+  ParkingMap map = sampleMap();
+  map.grid.add(GridLayer::kParkingLines, {1e6, -1e6}, SemanticClass::kSlotLine, 1.0F);
+  EXPECT_THAT(exportNav2(map, GridLayer::kDynamic, folder()).error().message,
+              HasSubstr("pixels, more than"));
+}
+
+TEST(MapExport, TextThatIsNoTextIsReplaced) {
+  ParkingMap map = sampleMap();
+  map.slots[0].number = "\xff\x01<";
+  const std::string path = folder() + "/odd";
+  ASSERT_TRUE(exportGeoJson(map, path));
+  EXPECT_TRUE(nlohmann::json::accept(contentOf(path)));
+  ASSERT_TRUE(exportLanelet2(map, path));
+  EXPECT_EQ(contentOf(path).find('\x01'), std::string::npos);
+}
+
+}  // namespace
+}  // namespace parkade

@@ -1,0 +1,213 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/mapping/storage/map_file.hpp"
+
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <thread>
+
+#include "parkade/mapping/map_test_support.hpp"
+#include "parkade/mapping/storage/sqlite.hpp"
+
+namespace parkade {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::sampleMap;
+
+class MapFileTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = ::testing::TempDir() + "parkade_map_" + std::to_string(getpid()) + "/";
+    std::filesystem::create_directories(folder_);
+    path_ = folder_ + "map.db";
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  void save(ParkingMap& map) {
+    Result<MapFile> file = MapFile::open(path_);
+    ASSERT_TRUE(file) << file.error().message;
+    const Status saved = file->save(map);
+    ASSERT_TRUE(saved) << saved.error().message;
+  }
+  std::string folder_;
+  std::string path_;
+};
+
+void expectSame(const ParkingMap& a, const ParkingMap& b) {
+  EXPECT_EQ(a.name, b.name);
+  EXPECT_TRUE(a.grid == b.grid);
+  EXPECT_TRUE(a.slots == b.slots);
+  EXPECT_TRUE(a.objects == b.objects);
+  ASSERT_EQ(a.nodes.size(), b.nodes.size());
+  for (std::size_t i = 0; i < a.nodes.size(); ++i) {
+    EXPECT_EQ(a.nodes[i].id, b.nodes[i].id);
+    EXPECT_EQ(a.nodes[i].t_ns, b.nodes[i].t_ns);
+    EXPECT_LT((a.nodes[i].T_world_vehicle.matrix() - b.nodes[i].T_world_vehicle.matrix()).norm(),
+              1e-15);
+  }
+  ASSERT_EQ(a.edges.size(), b.edges.size());
+  for (std::size_t i = 0; i < a.edges.size(); ++i) {
+    EXPECT_EQ(a.edges[i].kind, b.edges[i].kind);
+    EXPECT_EQ(a.edges[i].information, b.edges[i].information);
+  }
+}
+
+TEST_F(MapFileTest, RoundTripIsIdentical) {
+  ParkingMap map = sampleMap();
+  save(map);
+  const Result<ParkingMap> loaded = loadMap(path_);
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  expectSame(map, *loaded);
+}
+
+TEST_F(MapFileTest, NewFileIsAnEmptyMap) {
+  ASSERT_TRUE(MapFile::open(path_));
+  const Result<ParkingMap> loaded = loadMap(path_);
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  EXPECT_TRUE(loaded->slots.empty());
+}
+
+TEST_F(MapFileTest, LaterSavesWriteChangesAndRemovals) {
+  ParkingMap map = sampleMap();
+  Result<MapFile> file = MapFile::open(path_);
+  ASSERT_TRUE(file);
+  ASSERT_TRUE(file->save(map));
+  map.grid.add(GridLayer::kParkingLines, {50.0, 50.0}, SemanticClass::kSlotLine, 2.0F);
+  map.grid.fade(GridLayer::kDynamic, 0.0F);
+  map.slots.pop_back();
+  ASSERT_TRUE(file->save(map));
+  const Result<ParkingMap> loaded = loadMap(path_);
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  expectSame(map, *loaded);
+  EXPECT_TRUE(loaded->grid.tiles(GridLayer::kDynamic).empty());
+}
+
+TEST_F(MapFileTest, ForeignAndMissingFilesAreNamed) {
+  EXPECT_THAT(loadMap(folder_ + "none.db").error().message, HasSubstr("none.db: there is no such"));
+  std::ofstream(path_)
+      << "these are no pages of a database, but a text of some length ............";
+  EXPECT_THAT(loadMap(path_).error().message, HasSubstr(path_));
+  EXPECT_FALSE(MapFile::open(path_));  // and it stays as it is
+  std::string content;
+  std::getline(std::ifstream(path_), content);
+  EXPECT_THAT(content, HasSubstr("no pages"));
+  const std::string other = folder_ + "other.db";
+  {
+    sqlite::Database database(other, sqlite::Database::Mode::kReadWriteCreate);
+    database.execute("CREATE TABLE t (a)");
+  }
+  EXPECT_THAT(loadMap(other).error().message, HasSubstr("no Parkade map"));
+  EXPECT_THAT(MapFile::open(other).error().message, HasSubstr("no Parkade map"));
+}
+
+TEST_F(MapFileTest, ValuesOutOfRangeAreNamed) {
+  const auto messageAfter = [&](const std::string& sql) {
+    ParkingMap map = sampleMap();
+    save(map);
+    {
+      sqlite::Database database(path_, sqlite::Database::Mode::kReadWriteCreate);
+      database.execute(sql);
+    }
+    const Result<ParkingMap> loaded = loadMap(path_);
+    EXPECT_FALSE(loaded) << sql;
+    std::filesystem::remove(path_);
+    return loaded ? std::string() : loaded.error().message;
+  };
+  EXPECT_THAT(messageAfter("UPDATE slot SET probability_free = 1.5"), HasSubstr("probability 1.5"));
+  EXPECT_THAT(messageAfter("UPDATE slot SET x0 = 'wide'"), HasSubstr("'x0'"));
+  EXPECT_THAT(messageAfter("UPDATE slot SET x0 = 9e999"), HasSubstr("not a finite number"));
+  EXPECT_THAT(messageAfter("UPDATE slot SET shape = 7"), HasSubstr("unknown slot shape 7"));
+  EXPECT_THAT(messageAfter("UPDATE object SET class = 'ufo'"), HasSubstr("unknown class 'ufo'"));
+  EXPECT_THAT(messageAfter("UPDATE object SET outline = x'00'"), HasSubstr("outline of 1 bytes"));
+  EXPECT_THAT(messageAfter("UPDATE node SET qw = 3"), HasSubstr("quaternion of norm"));
+  EXPECT_THAT(messageAfter("DELETE FROM node WHERE id = 2"), HasSubstr("nodes 1 and 2"));
+  EXPECT_THAT(messageAfter("UPDATE tile SET cells = x'0102'"), HasSubstr("tile is damaged"));
+  EXPECT_THAT(messageAfter("UPDATE meta SET value = '0' WHERE key = 'resolution'"),
+              HasSubstr("resolution '0'"));
+  EXPECT_THAT(messageAfter("PRAGMA user_version = 9"), HasSubstr("schema version 9"));
+  EXPECT_THAT(messageAfter("ALTER TABLE slot DROP COLUMN last_seen_ns"),
+              HasSubstr("number 15, which is missing"));
+  EXPECT_THAT(messageAfter("DROP TABLE edge"), HasSubstr("edge"));
+}
+
+TEST_F(MapFileTest, IntegrityCheckFindsDamageThatLoadingDoesNotSee) {
+  ParkingMap map = sampleMap();
+  save(map);
+  EXPECT_TRUE(checkIntegrity(path_));
+  {
+    sqlite::Database database(path_, sqlite::Database::Mode::kReadWriteCreate);
+    database.execute("CREATE INDEX extra ON slot (x0)");
+    database.execute("PRAGMA writable_schema = ON");
+    database.execute(
+        "UPDATE sqlite_schema SET sql = 'CREATE INDEX extra ON slot (y0)' "
+        "WHERE name = 'extra'");
+  }
+  EXPECT_TRUE(loadMap(path_));
+  const Status status = checkIntegrity(path_);
+  ASSERT_FALSE(status);
+  EXPECT_THAT(status.error().message, HasSubstr("is damaged"));
+}
+
+TEST_F(MapFileTest, DamagedBytesNeverCrash) {
+  ParkingMap map = sampleMap();
+  save(map);
+  std::ifstream stream(path_, std::ios::binary);
+  const std::string good((std::istreambuf_iterator<char>(stream)), {});
+  Random random(5);
+  int loaded = 0;
+  constexpr int kRounds = 300;  // tools/fuzz_map.sh runs many more, under ASan
+  for (int round = 0; round < kRounds; ++round) {
+    std::string bad = good;
+    const int hits = random.integer(1, 20);
+    for (int i = 0; i < hits; ++i) bad[random.index(bad.size())] = static_cast<char>(random.bits());
+    if (random.chance(0.2)) bad.resize(random.index(bad.size()));
+    std::ofstream(path_, std::ios::binary | std::ios::trunc) << bad;
+    const Result<ParkingMap> result = loadMap(path_);
+    if (result) {
+      ++loaded;
+    } else {
+      EXPECT_FALSE(result.error().message.empty());
+    }
+  }
+  EXPECT_LT(loaded, kRounds);
+}
+
+TEST_F(MapFileTest, KillDuringWritingLeavesAMapThatOpens) {
+  // The first save is the parent's: a child may be killed before it reaches its own.
+  ParkingMap first = sampleMap(99);
+  save(first);
+  constexpr int kRounds = 50;
+  int complete = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      ParkingMap map = sampleMap(static_cast<std::uint64_t>(round));
+      Result<MapFile> file = MapFile::open(path_);
+      while (file) {
+        map.grid.add(GridLayer::kAvailability, {1.0, 2.0}, SemanticClass::kFloor, 0.1F);
+        if (!file->save(map)) break;
+      }
+      _exit(1);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5 + 3 * round % 61));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    const Result<ParkingMap> loaded = loadMap(path_);
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    complete += loaded->slots.size() == 6U ? 1 : 0;
+  }
+  EXPECT_EQ(complete, kRounds);
+}
+
+}  // namespace
+}  // namespace parkade
