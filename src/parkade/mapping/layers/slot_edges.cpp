@@ -122,9 +122,9 @@ void judgeBins(const LayeredGrid& grid, SlotEdge& edge) {
 // Whether two entrances, or two rears, belong to slots of one row that are as wide.
 bool standTogether(const SlotEdge& a, const SlotEdge& b) {
   constexpr double kAlongside = 0.9945;  // cosine of 6 degrees
-  constexpr double kOff = 0.35;         // m off one line
-  constexpr double kApart = 3.5;        // m between their ends: a pillar
-  constexpr double kAsWide = 0.35;      // m
+  constexpr double kOff = 0.35;          // m off one line
+  constexpr double kApart = 3.5;         // m between their ends: a pillar
+  constexpr double kAsWide = 0.35;       // m
   if (a.kind != b.kind || a.shape != b.shape || std::abs(a.length() - b.length()) > kAsWide ||
       std::abs(a.along().dot(b.along())) < kAlongside) {
     return false;
