@@ -246,27 +246,4 @@ FilterUpdate PoseFilter::updateHeading(double angle, double sigma, double gate_p
                  Eigen::MatrixXd::Constant(1, 1, sigma * sigma), gate_probability);
 }
 
-FilterUpdate PoseFilter::updateAbsolute(const SE2& T_world_vehicle,
-                                        const Eigen::Matrix3d& information,
-                                        double gate_probability) {
-  const Eigen::Vector3d innovation = (poses_[0].T_world_vehicle.inverse() * T_world_vehicle).log();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information);
-  constexpr double kLeast = 1e-6;
-  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(3, P_.cols());
-  H.leftCols<3>() = eigen.eigenvectors().transpose();
-  Eigen::Vector3d variance = Eigen::Vector3d::Zero();
-  Eigen::Index used = 0;
-  Eigen::VectorXd turned = eigen.eigenvectors().transpose() * innovation;
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    if (eigen.eigenvalues()[k] <= kLeast) continue;
-    H.row(used) = H.row(k).eval();
-    turned[used] = turned[k];
-    variance[used] = 1.0 / eigen.eigenvalues()[k];
-    ++used;
-  }
-  if (used == 0) return {};
-  return correct(turned.head(used), H.topRows(used),
-                 Eigen::MatrixXd(variance.head(used).asDiagonal()), gate_probability);
-}
-
 }  // namespace parkade

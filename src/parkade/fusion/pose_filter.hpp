@@ -72,9 +72,6 @@ class PoseFilter {
   /// The heading in the world, of the car or of an anchor.
   FilterUpdate updateHeading(double angle, double sigma, double gate_probability,
                              std::int64_t of = kCar);
-  /// The whole pose in the world, as a saved map tells it; information may be singular.
-  FilterUpdate updateAbsolute(const SE2& T_world_vehicle, const Eigen::Matrix3d& information,
-                              double gate_probability);
 
   [[nodiscard]] const GroundPose& pose() const { return poses_.front(); }
   [[nodiscard]] Matrix4 covariance() const { return P_.topLeftCorner<4, 4>(); }
