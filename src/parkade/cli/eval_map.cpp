@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "parkade/cli/command.hpp"
+#include "parkade/cli/map_path.hpp"
 #include "parkade/cli/map_truth_file.hpp"
 #include "parkade/eval/map_picture.hpp"
 #include "parkade/eval/map_report.hpp"
@@ -53,7 +54,7 @@ Status evaluateMapFile(const EvalMapArguments& arguments) {
 
 Result<PlacedMap> loadPlacedMap(const std::string& path, const Trajectory& driven) {
   const bool folder = fs::is_directory(path);
-  const std::string file = folder ? joinPath(path, "map.db") : path;
+  const std::string file = mapFileOf(path);
   if (!fs::is_regular_file(file)) {
     return Error{fmt::format("{}: no map there; run with --method fused writes one", file)};
   }

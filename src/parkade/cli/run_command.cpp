@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "parkade/cli/command.hpp"
+#include "parkade/cli/map_path.hpp"
 #include "parkade/cli/open_source.hpp"
 #include "parkade/cli/run_outputs.hpp"
 #ifdef PARKADE_WITH_REPORT
@@ -79,8 +79,7 @@ RunMethod methodOf(const std::string& name) {
 
 // map: file, or folder of the run that made it.
 Status locateInMap(const std::string& map, MappingRun& run) {
-  const Result<ParkingMap> saved =
-      loadMap(std::filesystem::is_directory(map) ? joinPath(map, "map.db") : map);
+  const Result<ParkingMap> saved = loadMap(mapFileOf(map));
   if (!saved) return saved.error();
   if (saved->slots.empty()) {
     return Error{fmt::format("{}: holds no slots to find the car by", map)};
