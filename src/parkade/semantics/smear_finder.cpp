@@ -24,7 +24,7 @@ struct Sight {
   bool behind_wall = false;
 };
 
-bool isStructure(SemanticClass c) {
+bool isBuilt(SemanticClass c) {
   return c == SemanticClass::kWall || c == SemanticClass::kPillar ||
          c == SemanticClass::kZoneMarker;
 }
@@ -47,7 +47,7 @@ void goOn(Sight& sight, SemanticClass c, float length, float least, float wall_l
   } else {
     sight.vehicle = 0.0F;
   }
-  if (isStructure(c) || sight.blocked) {
+  if (isBuilt(c) || sight.blocked) {
     sight.structure += length;
     sight.blocked = sight.blocked || sight.structure >= least;
   } else {
@@ -67,7 +67,7 @@ std::uint8_t smearOf(const Sight& sight, SemanticClass c, const SmearOptions& op
     const bool is_smear = sight.behind_wall || sight.wheel_stop > options.wheel_stop_depth_m;
     return is_smear ? SemanticFrame::kSmear : 0;
   }
-  if (!isStructure(c)) return sight.behind_wall ? SemanticFrame::kSmear : 0;
+  if (!isBuilt(c)) return sight.behind_wall ? SemanticFrame::kSmear : 0;
   const bool wall = c == SemanticClass::kWall;
   if (sight.behind_car || sight.structure > depthOf(c, options)) return SemanticFrame::kSmear;
   return !wall && sight.structure > options.edge_m ? SemanticFrame::kBehindEdge : 0;
@@ -127,7 +127,7 @@ bool SmearFinder::standsOnStructure(const cv::Mat& labels, const Eigen::Vector2d
     const int v = static_cast<int>(std::lround(p.y()));
     for (int y = std::max(0, v - kAround); y <= std::min(labels.rows - 1, v + kAround); ++y) {
       for (int x = std::max(0, u - kAround); x <= std::min(labels.cols - 1, u + kAround); ++x) {
-        if (isStructure(static_cast<SemanticClass>(labels.at<std::uint8_t>(y, x)))) return true;
+        if (isBuilt(static_cast<SemanticClass>(labels.at<std::uint8_t>(y, x)))) return true;
       }
     }
   }
@@ -186,7 +186,7 @@ cv::Mat SmearFinder::find(const BevLabels& labels, const std::vector<RaisedPoint
       since = behind > 0.0F ? since + ray.length : 0.0F;
       if (!step.own) continue;
       const bool is_hidden =
-          behind > 0.0F && (!hidesGround(c) || (isStructure(c) && since > depthOf(c, options_)));
+          behind > 0.0F && (!hidesGround(c) || (isBuilt(c) && since > depthOf(c, options_)));
       smear.data[step.pixel] = is_hidden ? SemanticFrame::kSmear : smearOf(sight, c, options_);
     }
   }

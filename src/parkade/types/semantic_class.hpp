@@ -40,4 +40,9 @@ inline constexpr std::array<std::string_view, kNumSemanticClasses> kSemanticClas
     "wheel_stop",        "pillar",      "wall",       "ceiling",         "vehicle",
     "pedestrian",        "zone_marker", "guide_sign", "speed_limit_sign"};
 
+/// Pillar or wall: stands on the ground for good, and nothing is seen through it.
+constexpr bool isStructure(SemanticClass c) {
+  return c == SemanticClass::kPillar || c == SemanticClass::kWall;
+}
+
 }  // namespace parkade

@@ -65,8 +65,7 @@ void stampFoot(const Vector2d& middle, double radius, LayeredGrid& grid) {
   });
   if (2 * known < static_cast<std::ptrdiff_t>(foot.size())) return;
   for (const Vector2i& cell : foot) {
-    const SemanticClass c = grid.at(GridLayer::kZoneMarkers, cell).believed();
-    if (c == SemanticClass::kWall || c == SemanticClass::kPillar) continue;
+    if (isStructure(grid.at(GridLayer::kZoneMarkers, cell).believed())) continue;
     grid.set(GridLayer::kZoneMarkers, cell, SemanticClass::kPillar, kLogOdds);
   }
 }

@@ -22,11 +22,6 @@ constexpr double kThick = 0.35;  // m of structure whose near side is seen
 // What a ray may meet in a cell.
 enum Cell : std::uint8_t { kOther = 0, kStructure = 1, kSeen = 2 };
 
-bool isStructure(const GridCell& cell) {
-  const SemanticClass c = cell.believed();
-  return c == SemanticClass::kWall || c == SemanticClass::kPillar;
-}
-
 // A drive that went astray: its map is too large for an array, and worth none.
 bool isAstray(const LayeredGrid::Bounds& bounds) {
   return !checkPictureSize((bounds.max - bounds.min).cast<double>() + Vector2d::Ones());
@@ -41,7 +36,7 @@ class Raster {
         size_(bounds.max - bounds.min + Vector2i::Ones()),
         cells_(static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y()), kOther) {
     grid.forEachKnown(kLayer, [&](const Vector2i& index, const GridCell& cell) {
-      if (!isStructure(cell)) return;
+      if (!isStructure(cell.believed())) return;
       std::uint8_t* found = find(index);
       if (found != nullptr) *found = kStructure;
     });
@@ -126,7 +121,8 @@ void retreatFromUnseen(LayeredGrid& grid) {
   std::vector<Vector2i> lost;
   grid.forEachKnown(kLayer, [&](const Vector2i& index, const GridCell& cell) {
     const Vector2i p = index - origin;
-    if (!isStructure(cell) && unseen.at<std::uint8_t>(p.y(), p.x()) != 0) lost.push_back(index);
+    if (!isStructure(cell.believed()) && unseen.at<std::uint8_t>(p.y(), p.x()) != 0)
+      lost.push_back(index);
   });
   grid.forget(kLayer, lost);
 }

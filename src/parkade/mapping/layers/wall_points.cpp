@@ -72,9 +72,8 @@ bool isHidden(const LayeredGrid& grid, const Vector2d& eye, const Vector2d& p) {
   const int count = static_cast<int>((distance - kBefore) / grid.resolution());
   int inside = 0;
   for (int n = 0; n < count; ++n) {
-    const SemanticClass c =
-        grid.at(GridLayer::kZoneMarkers, grid.cellOf(eye + n * step)).believed();
-    inside = c == SemanticClass::kWall || c == SemanticClass::kPillar ? inside + 1 : 0;
+    const Vector2i cell = grid.cellOf(eye + n * step);
+    inside = isStructure(grid.at(GridLayer::kZoneMarkers, cell).believed()) ? inside + 1 : 0;
     if (inside >= kOpaque) return true;
   }
   return false;

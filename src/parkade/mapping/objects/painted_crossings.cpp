@@ -138,8 +138,7 @@ class StripeFitter {
 
   [[nodiscard]] bool isBlocked(const Vector2d& p) const {
     const Vector2i cell = grid_.cellOf(p);
-    const SemanticClass structure = grid_.at(GridLayer::kZoneMarkers, cell).believed();
-    return structure == SemanticClass::kWall || structure == SemanticClass::kPillar ||
+    return isStructure(grid_.at(GridLayer::kZoneMarkers, cell).believed()) ||
            grid_.at(GridLayer::kAvailability, cell).believed() == SemanticClass::kVehicle;
   }
 

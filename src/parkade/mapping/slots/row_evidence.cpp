@@ -80,10 +80,6 @@ class GridProbe {
   const LayeredGrid& grid_;
 };
 
-bool stands(SemanticClass c) {
-  return c == SemanticClass::kPillar || c == SemanticClass::kWall;
-}
-
 void lookInside(const GridProbe& probe, const Corners& c, double step, SlotEvidence& evidence) {
   constexpr double kBorder = 0.3;  // m
   const double width = (c[1] - c[0]).norm();
@@ -99,7 +95,7 @@ void lookInside(const GridProbe& probe, const Corners& c, double step, SlotEvide
       const SemanticClass use = probe.at(GridLayer::kAvailability, p);
       if (use == SemanticClass::kVehicle) vehicles += 1.0;
       if (use != SemanticClass::kUnknown) evidence.seen += 1.0;
-      if (stands(probe.at(GridLayer::kZoneMarkers, p))) evidence.structure_inside += 1.0;
+      if (isStructure(probe.at(GridLayer::kZoneMarkers, p))) evidence.structure_inside += 1.0;
       if (!probe.isSeen(p)) continue;
       floor += 1.0;
       if (probe.isSlotLine(p)) evidence.lines_inside += 1.0;
