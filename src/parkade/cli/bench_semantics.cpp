@@ -66,6 +66,7 @@ Status drawAll(const BenchArguments& arguments, const std::vector<int>& seeds,
     if (!spec) return spec.error();
     spec->fast = arguments.fast;
     spec->threads = arguments.threads;
+    spec->first_zone = arguments.options.first_zone;
     const Result<std::unique_ptr<SemanticSampler>> sampler =
         SemanticSampler::make(*spec, arguments.options, arguments.bev);
     if (!sampler) return sampler.error();

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <opencv2/core/mat.hpp>
+#include <string>
 #include <vector>
 
 #include "parkade/bev/stitcher.hpp"
@@ -25,6 +26,7 @@ struct SampleOptions {
   bool masks = true;
   bool coarse_light = false;
   bool stitched = true;
+  std::string first_zone = "A";
 
   void visit(OptionVisitor& v) {
     v.field("frames", frames, "count", "Frame sets per drive, evenly along the way.", 1, 100000);
@@ -40,6 +42,7 @@ struct SampleOptions {
     v.field("masks", masks, "Whether the stitcher knows where the own body is in sight.");
     v.field("coarse_light", coarse_light, "Bake the light coarsely: faster, for training.");
     v.field("stitched", stitched, "Whether the stitched picture and its labels are made.");
+    v.field("first_zone", first_zone, "Letter of the garages' first row of zones.");
   }
 };
 

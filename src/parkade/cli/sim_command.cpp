@@ -90,6 +90,8 @@ void addSpecOptions(CLI::App& command, Arguments& arguments) {
            "Share of slots with a parked car, 0 to 1");
   addField(command, arguments, "--one-way", "one_way", "SHARE",
            "Share of a random garage's aisles that are one-way, 0 to 1 [0]");
+  addField(command, arguments, "--first-zone", "first_zone", "LETTER",
+           "Letter of the first row's zones [A]");
   addPair(command, arguments, "--agents", "cars", "people", "CARS,PEOPLE",
           "Moving cars and walking people");
   addField(command, arguments, "--speed-kmh", "speed_kmh", "KMH", "Highest speed of the own car");

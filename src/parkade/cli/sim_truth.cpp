@@ -57,12 +57,14 @@ std::string specText(const sim::SimSpec& spec) {
   sim::SimSpec fixed = spec;
   fixed.threads = 1;  // the bytes do not depend on it
   std::string text = dumpOptions(asOptions(fixed));
-  if (spec.one_way == 0.0) {
-    // As before there was this option: recordings of that time are still the same.
-    const std::string line = "one_way: 0\n";
-    if (const std::size_t at = text.find(line); at != std::string::npos)
+  // As before there were these options: recordings of that time are still the same.
+  const auto leave_out = [&text](const std::string& line) {
+    if (const std::size_t at = text.find(line); at != std::string::npos) {
       text.erase(at, line.size());
-  }
+    }
+  };
+  if (spec.one_way == 0.0) leave_out("one_way: 0\n");
+  if (spec.first_zone == "A") leave_out("first_zone: 'A'\n");
   return text;
 }
 

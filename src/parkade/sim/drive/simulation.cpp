@@ -93,6 +93,7 @@ Result<std::shared_ptr<const Simulation>> Simulation::make(const SimSpec& spec) 
   garage_options.seed = spec.garage_seed;
   garage_options.occupancy = spec.occupancy;
   garage_options.one_way = spec.one_way;
+  garage_options.first_zone = spec.first_zone;
   Result<Garage> garage = generateGarage(garage_options);
   if (!garage) return garage.error();
   simulation->garage_ = std::move(garage).value();

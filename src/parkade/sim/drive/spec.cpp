@@ -27,6 +27,8 @@ void SimSpec::visit(OptionVisitor& v) {
   v.field("one_way", one_way, "share",
           "Share of a random garage's aisles that are one-way, as far as all stay in reach.", 0.0,
           1.0);
+  v.field("first_zone", first_zone,
+          "Letter of the first row's zones, A to Z without I and O; the next rows follow it.");
   v.field("cars", cars, "count", "Cars that move about.", 0, 50);
   v.field("people", people, "count", "People who walk about.", 0, 100);
   v.field("speed_kmh", speed_kmh, "km/h", "Highest speed of the own car.", 2.0, 30.0);

@@ -20,6 +20,7 @@ struct SimSpec {
   double lux = 200.0;
   double occupancy = 0.6;
   double one_way = 0.0;
+  std::string first_zone = "A";
   int cars = 2;
   int people = 3;
   double speed_kmh = 15.0;

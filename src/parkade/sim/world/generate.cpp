@@ -74,9 +74,15 @@ Result<Garage> generateGarage(const GarageOptions& options) {
                     "garages can be one-way",
                     options.preset)};
   }
+  if (options.first_zone.size() != 1 ||
+      kZoneLetters.find(options.first_zone) == std::string_view::npos) {
+    return Error{fmt::format("first_zone: '{}' is none of the letters {}", options.first_zone,
+                             kZoneLetters)};
+  }
   const auto seed = static_cast<std::uint64_t>(options.seed);
   const Random random = Random(seed).fork("garage");
-  const GarageStyle style = makeStyle(options.preset, seed);
+  GarageStyle style = makeStyle(options.preset, seed);
+  style.first_zone = options.first_zone.front();
   Garage garage;
   garage.name = options.preset;
   garage.seed = seed;

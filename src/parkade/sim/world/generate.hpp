@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "parkade/core/options.hpp"
 #include "parkade/core/result.hpp"
@@ -10,11 +11,15 @@
 
 namespace parkade::sim {
 
+/// Letters of zones, row by row: without I and O, which look like digits.
+inline constexpr std::string_view kZoneLetters = "ABCDEFGHJKLMNPQRSTUVWXYZ";
+
 struct GarageOptions {
   std::string preset = "paper";
   int seed = 0;
   double occupancy = 0.6;
   double one_way = 0.0;
+  std::string first_zone = "A";
 
   void visit(OptionVisitor& v) {
     v.field("preset", preset,
@@ -26,11 +31,14 @@ struct GarageOptions {
     v.field("one_way", one_way, "share",
             "Share of the aisles that are one-way (random), as far as all stay in reach.", 0.0,
             1.0);
+    v.field("first_zone", first_zone,
+            "Letter of the first row's zones, A to Z without I and O; the next rows follow it.");
   }
 };
 
 /// Makes a garage. The same options give the same garage. Fails on an unknown preset, an
-/// occupancy or share of one-way aisles outside 0 to 1, or one-way aisles in the preset "paper".
+/// occupancy or share of one-way aisles outside 0 to 1, one-way aisles in the preset "paper", or a
+/// first zone that is none of kZoneLetters.
 Result<Garage> generateGarage(const GarageOptions& options);
 
 }  // namespace parkade::sim

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "parkade/sim/world/aisle_graph.hpp"
+#include "parkade/sim/world/generate.hpp"
 #include "parkade/sim/world/paint.hpp"
 #include "parkade/sim/world/stroke_font.hpp"
 
@@ -33,12 +34,11 @@ Sign& addSign(Garage& garage, SemanticClass semantic_class, const SE3& pose, dou
   return garage.signs.back();
 }
 
-std::string zoneName(int scheme, std::size_t row, std::size_t column) {
-  // Without I and O, which look like digits.
-  constexpr const char* kLetters = "ABCDEFGHJKLMNPQRSTUVWXYZ";
-  const std::string letter(1, kLetters[row % 24]);
+std::string zoneName(const GarageStyle& style, std::size_t row, std::size_t column) {
+  const std::size_t first = kZoneLetters.find(style.first_zone);
+  const std::string letter(1, kZoneLetters[(first + row) % kZoneLetters.size()]);
   const std::string number = std::to_string(column + 1);
-  switch (scheme) {
+  switch (style.zone_scheme) {
     case 1:
       return letter + "-" + number;
     case 2:
@@ -61,7 +61,7 @@ std::size_t indexOf(const std::vector<double>& lines, double value) {
 void addZoneMarkers(const Layout& layout, const GarageStyle& style, Random random, Garage& garage) {
   for (Pillar& pillar : garage.pillars) {
     if (!random.chance(style.zone_share)) continue;
-    pillar.zone_text = zoneName(style.zone_scheme, indexOf(layout.pillar_y, pillar.center.y()),
+    pillar.zone_text = zoneName(style, indexOf(layout.pillar_y, pillar.center.y()),
                                 indexOf(layout.pillar_x, pillar.center.x()));
     const double room = 0.86 * pillar.size.x();
     double height = style.zone_text_height;

@@ -78,6 +78,7 @@ struct GarageStyle {
   double zone_text_center = 1.75;  ///< m above the floor
   int zone_faces = 4;              ///< pillar faces that carry the text
   int zone_scheme = 0;             ///< 0 "B12", 1 "B-12", 2 "B2", 3 "12B"
+  char first_zone = 'A';           ///< letter of the first row of pillars
   bool zone_band = true;           ///< coloured band behind the text, else on the bare pillar
   double zone_share = 1.0;         ///< of the pillars that carry a marker
 
