@@ -100,6 +100,7 @@ class SimTest(unittest.TestCase):
             (["--duration", "-1"], 1, ["duration"]),
             (["--one-way", "0.5"], 1, ["one_way", "paper"]),
             (["--garage", "random", "--one-way", "2"], 1, ["one_way", "2"]),
+            (["--garage", "random", "--first-zone", "I"], 1, ["first_zone", "'I'"]),
             (["--agents", "3"], 2, ["--agents", "comma"]),
             (["--colour", "red"], 2, ["--colour"]),
         ]:

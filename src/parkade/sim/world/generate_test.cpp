@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/sim/world/generate.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
+#include <cctype>
 #include <queue>
 #include <set>
+#include <string>
 
 #include "parkade/sim/world/polygon.hpp"
 #include "parkade/sim/world/style.hpp"
@@ -152,6 +154,41 @@ TEST(GenerateTest, MarkingsLieInsideAndSignsAreUnique) {
       EXPECT_NEAR(sign.T_world_sign.rotation().matrix()(2, 1), 1.0, 1e-9);  // y is up
     }
     for (const Slot& slot : garage.slots) EXPECT_EQ(zones.count(slot.zone), 1U) << slot.id;
+  }
+}
+
+TEST(GenerateTest, ZonesBeginAtAnyLetterAndNothingElseChanges) {
+  const Garage usual = make("random", 12);
+  GarageOptions options;
+  options.preset = "random";
+  options.seed = 12;
+  options.first_zone = "Y";
+  const Result<Garage> garage = generateGarage(options);
+  ASSERT_TRUE(garage.ok()) << garage.error().message;
+  ASSERT_EQ(garage->pillars.size(), usual.pillars.size());
+  std::set<char> letters;
+  for (std::size_t i = 0; i < usual.pillars.size(); ++i) {
+    const std::string& text = garage->pillars[i].zone_text;
+    ASSERT_EQ(text.size(), usual.pillars[i].zone_text.size());
+    for (std::size_t k = 0; k < text.size(); ++k) {
+      const char before = usual.pillars[i].zone_text[k];
+      if (std::isalpha(static_cast<unsigned char>(before)) == 0) {
+        EXPECT_EQ(text[k], before);
+      } else {
+        letters.insert(text[k]);
+        const std::size_t row = kZoneLetters.find(before);
+        EXPECT_EQ(text[k], kZoneLetters[(row + kZoneLetters.find('Y')) % kZoneLetters.size()]);
+      }
+    }
+  }
+  EXPECT_EQ(letters.count('Y'), 1U);
+  EXPECT_EQ(garage->markings.size(), usual.markings.size());
+
+  for (const char* wrong : {"", "I", "a", "AB"}) {
+    options.first_zone = wrong;
+    const Result<Garage> refused = generateGarage(options);
+    ASSERT_FALSE(refused.ok()) << wrong;
+    EXPECT_THAT(refused.error().message, ::testing::HasSubstr("first_zone"));
   }
 }
 
