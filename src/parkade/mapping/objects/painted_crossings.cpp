@@ -13,6 +13,7 @@
 #include "parkade/core/median.hpp"
 #include "parkade/geometry/se2.hpp"
 #include "parkade/mapping/map_check.hpp"
+#include "parkade/mapping/objects/crossing_stripes.hpp"
 #include "parkade/mapping/objects/paint_raster.hpp"
 #include "parkade/mapping/slots/slot_axes.hpp"
 
@@ -20,232 +21,8 @@ namespace parkade {
 namespace {
 
 using Eigen::Vector2d;
-using Eigen::Vector2i;
 
-constexpr double kBin = 0.05;  // m
-
-struct Count {
-  int cells = 0;
-  int known = 0;
-  int paint = 0;
-  int blocked = 0;  ///< unknown, by what stands there
-  [[nodiscard]] double share() const {
-    return known == 0 ? 0.0 : static_cast<double>(paint) / known;
-  }
-};
-
-struct Span {
-  double low = 0.0;
-  double high = 0.0;
-};
-
-// From the lowest to the highest value, but for a share at either end.
-Span spanOf(std::vector<double> values, double cut) {
-  const auto at = [&](double share) {
-    const auto n = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + n, values.end());
-    return values[static_cast<std::size_t>(n)];
-  };
-  return {at(cut), at(1.0 - cut)};
-}
-
-// Stripes along x, one behind the other along y.
-struct Stripes {
-  SE2 T_map_crossing;
-  double period = 0.0;  // m
-  double width = 0.0;   // m, of a stripe
-  double first = 0.0;   // y where one begins
-  double contrast = 0.0;
-  Span along;    // x
-  int from = 0;  // indices of the outermost
-  int to = -1;
-
-  [[nodiscard]] int count() const { return to - from + 1; }
-  [[nodiscard]] double begin(int index) const { return first + index * period; }
-  [[nodiscard]] Span across() const { return {begin(from), begin(to) + width}; }
-  /// Whether one holds a place, and not only at its rim.
-  [[nodiscard]] bool holds(const Vector2d& p) const {
-    const int index = static_cast<int>(std::floor((p.y() - first) / period));
-    const double y = p.y() - begin(index);
-    return p.x() > along.low + kBin && p.x() < along.high - kBin && index >= from && index <= to &&
-           y > kBin && y < width - kBin;
-  }
-  [[nodiscard]] std::vector<Vector2d> outline() const {
-    const Span y = across();
-    std::vector<Vector2d> corners;
-    for (const Vector2d& p : {Vector2d(along.low, y.low), Vector2d(along.high, y.low),
-                              Vector2d(along.high, y.high), Vector2d(along.low, y.high)}) {
-      corners.push_back(T_map_crossing * p);
-    }
-    return corners;
-  }
-};
-
-class StripeFitter {
- public:
-  StripeFitter(const std::vector<Vector2d>& patch, const PaintRaster& raster,
-               const LayeredGrid& grid)
-      : patch_(patch), raster_(raster), grid_(grid) {
-    for (const Vector2d& p : patch) middle_ += p / static_cast<double>(patch.size());
-  }
-
-  [[nodiscard]] std::optional<Stripes> fit(double axis) const {
-    constexpr double kLeastContrast = 0.5;
-    constexpr int kFewest = 3;
-    Stripes best;
-    for (const int quarter : {0, 1}) {
-      for (const double turn : {-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0}) {
-        const double heading = axis + quarter * M_PI_2 + turn * M_PI / 180.0;
-        const Stripes stripes = fitAcross(SE2(heading, middle_));
-        if (stripes.contrast > best.contrast) best = stripes;
-      }
-    }
-    if (best.contrast < kLeastContrast) return std::nullopt;
-    findEnds(best);
-    if (best.count() < kFewest || best.along.high <= best.along.low) {
-      return std::nullopt;
-    }
-    return best;
-  }
-
-  /// Whether bare floor, a car or a wall ends it on both sides, by a stripe more.
-  [[nodiscard]] bool hasEnds(const Stripes& s) const {
-    constexpr double kSeen = 0.5;
-    constexpr double kBare = 0.15;
-    for (const int index : {s.from - 1, s.to + 1}) {
-      const double y = s.begin(index);
-      const Count count = countIn(s.T_map_crossing, s.along, {y, y + s.width});
-      if (count.known + count.blocked < kSeen * count.cells || count.share() > kBare) return false;
-    }
-    return true;
-  }
-
- private:
-  [[nodiscard]] Count countIn(const SE2& T, const Span& x, const Span& y) const {
-    Count count;
-    for (double b = y.low + 0.5 * kBin; b < y.high; b += kBin) {
-      for (double a = x.low + 0.5 * kBin; a < x.high; a += kBin) {
-        const Vector2d p = T * Vector2d(a, b);
-        const PaintRaster::Cell cell = raster_.at(p);
-        ++count.cells;
-        count.known += cell != PaintRaster::Cell::kUnknown ? 1 : 0;
-        count.paint += cell == PaintRaster::Cell::kPaint ? 1 : 0;
-        count.blocked += cell == PaintRaster::Cell::kUnknown && isBlocked(p) ? 1 : 0;
-      }
-    }
-    return count;
-  }
-
-  [[nodiscard]] bool isBlocked(const Vector2d& p) const {
-    const Vector2i cell = grid_.cellOf(p);
-    return isStructure(grid_.at(GridLayer::kZoneMarkers, cell).believed()) ||
-           grid_.at(GridLayer::kAvailability, cell).believed() == SemanticClass::kVehicle;
-  }
-
-  // Period, width and phase by the profile across the stripes.
-  [[nodiscard]] Stripes fitAcross(const SE2& T) const {
-    constexpr double kCut = 0.05;
-    constexpr double kMostPeriod = 1.6;  // m
-    std::vector<double> xs;
-    std::vector<double> ys;
-    for (const Vector2d& cell : patch_) {
-      const Vector2d p = T.inverse() * cell;
-      xs.push_back(p.x());
-      ys.push_back(p.y());
-    }
-    Stripes best;
-    best.T_map_crossing = T;
-    best.along = spanOf(std::move(xs), kCut);
-    const Span across = spanOf(std::move(ys), 0.5 * kCut);
-    std::vector<double> shares;
-    for (double y = across.low; y < across.high; y += kBin) {
-      shares.push_back(countIn(T, best.along, {y, y + kBin}).share());
-    }
-    for (double period = 0.6; period <= kMostPeriod; period += 0.5 * kBin) {
-      if (2.0 * period > across.high - across.low) break;
-      for (double phase = 0.0; phase < period; phase += kBin) {
-        for (const double duty : {0.4, 0.5, 0.6}) {
-          const double contrast = contrastOf(shares, period, phase, duty);
-          if (contrast <= best.contrast) continue;
-          best.contrast = contrast;
-          best.period = period;
-          best.width = duty * period;
-          best.first = across.low + phase;
-        }
-      }
-    }
-    return best;
-  }
-
-  // Mean of the shares on stripes, less that of those between.
-  static double contrastOf(const std::vector<double>& shares, double period, double phase,
-                           double duty) {
-    double on = 0.0;
-    double off = 0.0;
-    int n_on = 0;
-    int n_off = 0;
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-      const double y = (static_cast<double>(i) + 0.5) * kBin - phase;
-      const double within = y / period - std::floor(y / period);
-      (within < duty ? on : off) += shares[i];
-      ++(within < duty ? n_on : n_off);
-    }
-    if (n_on == 0 || n_off == 0) return 0.0;
-    return on / n_on - off / n_off;
-  }
-
-  // The outermost stripes that show, and where they end.
-  void findEnds(Stripes& s) const {
-    constexpr double kShows = 0.25;
-    constexpr int kMost = 20;
-    double highest = 0.0;
-    for (const Vector2d& cell : patch_) {
-      highest = std::max(highest, (s.T_map_crossing.inverse() * cell).y());
-    }
-    bool any = false;
-    for (int index = -1; index < kMost && s.begin(index) < highest; ++index) {
-      const double y = s.begin(index);
-      if (countIn(s.T_map_crossing, s.along, {y, y + s.width}).share() < kShows) continue;
-      if (!any) s.from = index;
-      any = true;
-      s.to = index;
-    }
-    if (any) s.along = lengthOf(s);
-  }
-
-  [[nodiscard]] Span lengthOf(const Stripes& s) const {
-    constexpr double kReach = 1.0;  // m, beyond the span so far
-    constexpr double kHalf = 0.5;   // of what shows in the middle
-    const auto share_at = [&](double x) {
-      Count count;
-      for (int index = s.from; index <= s.to; ++index) {
-        const double y = s.begin(index);
-        const Count one = countIn(s.T_map_crossing, {x, x + kBin}, {y, y + s.width});
-        count.known += one.known;
-        count.paint += one.paint;
-      }
-      return count.share();
-    };
-    const double middle = 0.5 * (s.along.low + s.along.high);
-    const double usual =
-        countIn(s.T_map_crossing, s.along, s.across()).share() * s.period / s.width;
-    Span length{middle, middle};
-    for (double x = middle; x < s.along.high + kReach; x += kBin) {
-      if (share_at(x) > kHalf * usual) length.high = x + kBin;
-    }
-    for (double x = middle; x > s.along.low - kReach; x -= kBin) {
-      if (share_at(x) > kHalf * usual) length.low = x;
-    }
-    return length;
-  }
-
-  const std::vector<Vector2d>& patch_;
-  const PaintRaster& raster_;
-  const LayeredGrid& grid_;
-  Vector2d middle_ = Vector2d::Zero();
-};
-
-MapObject crossingObject(const Stripes& stripes) {
+MapObject crossingObject(const CrossingStripes& stripes) {
   constexpr double kSigma = 0.1;  // m
   MapObject object;
   object.semantic_class = SemanticClass::kCrossing;
@@ -255,7 +32,7 @@ MapObject crossingObject(const Stripes& stripes) {
   return object;
 }
 
-void tellCrossing(const Stripes& stripes, ParkingMap& map) {
+void tellCrossing(const CrossingStripes& stripes, ParkingMap& map) {
   constexpr double kPlain = 0.6;  // contrast
   constexpr double kOverlap = 0.3;
   MapObject crossing = crossingObject(stripes);
@@ -272,14 +49,14 @@ void tellCrossing(const Stripes& stripes, ParkingMap& map) {
 
 // Aisles of a garage are as wide as each other: how many stripes cross one. Very many where none
 // tells it.
-int usualCount(const std::vector<Stripes>& whole) {
+int usualCount(const std::vector<CrossingStripes>& whole) {
   if (whole.empty()) return std::numeric_limits<int>::max();
   std::vector<double> counts;
-  for (const Stripes& stripes : whole) counts.push_back(stripes.count());
+  for (const CrossingStripes& stripes : whole) counts.push_back(stripes.count());
   return static_cast<int>(std::ceil(median(std::move(counts))));
 }
 
-void drawStripes(const Stripes& stripes, LayeredGrid& grid) {
+void drawStripes(const CrossingStripes& stripes, LayeredGrid& grid) {
   const SE2 T_crossing_map = stripes.T_map_crossing.inverse();
   drawPaint(
       SemanticClass::kCrossing, stripes.outline(),
@@ -294,20 +71,19 @@ void completeCrossings(ParkingMap& map) {
   const std::optional<double> axis = slot_rows::findAxis(map.slots);
   if (!axis) return;
   const PaintRaster raster(map.grid, SemanticClass::kCrossing);
-  std::vector<Stripes> whole;  // both ends are in sight
-  std::vector<Stripes> others;
+  std::vector<CrossingStripes> whole;  // both ends are in sight
+  std::vector<CrossingStripes> others;
   for (const std::vector<Vector2d>& patch : raster.patches(kApart, kFewest)) {
-    const StripeFitter fitter(patch, raster, map.grid);
-    const std::optional<Stripes> stripes = fitter.fit(*axis);
-    if (stripes) (fitter.hasEnds(*stripes) ? whole : others).push_back(*stripes);
+    const std::optional<CrossingStripes> stripes = fitStripes(patch, raster, map.grid, *axis);
+    if (stripes) (stripes->has_ends ? whole : others).push_back(*stripes);
   }
   const int usual = usualCount(whole);
-  for (const Stripes& stripes : whole) tellCrossing(stripes, map);
-  for (const Stripes& stripes : others) {
+  for (const CrossingStripes& stripes : whole) tellCrossing(stripes, map);
+  for (const CrossingStripes& stripes : others) {
     if (stripes.count() >= usual) tellCrossing(stripes, map);
   }
-  for (const std::vector<Stripes>* group : {&whole, &others}) {
-    for (const Stripes& stripes : *group) drawStripes(stripes, map.grid);
+  for (const std::vector<CrossingStripes>* group : {&whole, &others}) {
+    for (const CrossingStripes& stripes : *group) drawStripes(stripes, map.grid);
   }
 }
 
