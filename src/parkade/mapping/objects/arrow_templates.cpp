@@ -92,7 +92,7 @@ void ArrowTemplate::finish() {
   for (int row = 0; row < seen_.rows; ++row) {
     for (int column = 0; column < seen_.cols; ++column) {
       const double share = (shows_(row, column) + 0.1) / (seen_(row, column) + 1.0);
-      if (share < kLeast) continue;
+      if (seen_(row, column) < 1.0F || share < kLeast) continue;
       const double shown = kWear * share;
       places_.push_back({placeOf(row, column), share, std::log(shown / kByChance),
                          std::log((1.0 - shown) / (1.0 - kByChance))});
