@@ -18,7 +18,7 @@ import torch
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from export_text import fold  # noqa: E402
 from text_network import TextNetwork  # noqa: E402
-from warm_start import blocks_of, load  # noqa: E402
+from warm_start import load, with_idle_norms  # noqa: E402
 
 
 def folded(path):
@@ -28,16 +28,7 @@ def folded(path):
     if path.endswith(".onnx"):
         return state
     network.load_state_dict(state)
-    plain = TextNetwork()
-    result = {key: value.clone() for key, value in plain.state_dict().items()}
-    done = fold(network.eval()).state_dict()
-    for name, _, norm in blocks_of(plain):
-        result[f"{name}.1.bias"] = done.pop(f"{name}.0.bias")
-        result[f"{name}.1.weight"] = torch.ones_like(norm.weight)
-        result[f"{name}.1.running_mean"] = torch.zeros_like(norm.running_mean)
-        result[f"{name}.1.running_var"] = torch.full_like(norm.running_var, 1.0 - norm.eps)
-    result.update(done)
-    return result
+    return with_idle_norms(path, fold(network.eval()).state_dict(), TextNetwork())
 
 
 def main():

@@ -32,9 +32,15 @@ def load(path, network):
 
     stored = {value.name: torch.from_numpy(numpy_helper.to_array(value).copy())
               for value in onnx.load(path).graph.initializer}
+    return with_idle_norms(path, stored, network)
+
+
+def with_idle_norms(path, stored, network):
+    """The state dict of a network whose batch norms were folded into the convolutions, as for export:
+    what is left of them does nothing. stored: its weights by name; path: where they come from."""
+    stored = dict(stored)
     state = {key: value.clone() for key, value in network.state_dict().items()}
     for name, _, norm in blocks_of(network):
-        # Export folded the batch norm into the convolution: what is left of it does nothing.
         state[f"{name}.1.bias"] = stored.pop(f"{name}.0.bias")
         state[f"{name}.1.weight"] = torch.ones_like(norm.weight)
         state[f"{name}.1.running_mean"] = torch.zeros_like(norm.running_mean)
