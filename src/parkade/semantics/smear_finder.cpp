@@ -25,8 +25,7 @@ struct Sight {
 };
 
 bool isBuilt(SemanticClass c) {
-  return c == SemanticClass::kWall || c == SemanticClass::kPillar ||
-         c == SemanticClass::kZoneMarker;
+  return isStructure(c) || c == SemanticClass::kZoneMarker;
 }
 
 // The pixel nearest to a point of the picture; nothing beyond it.
