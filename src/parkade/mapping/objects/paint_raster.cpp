@@ -6,6 +6,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "parkade/mapping/storage/map_drawing.hpp"
+
 namespace parkade {
 
 using Eigen::Vector2d;
@@ -15,8 +17,9 @@ PaintRaster::PaintRaster(const LayeredGrid& grid, SemanticClass semantic_class)
     : resolution_(grid.resolution()) {
   const auto bounds = grid.bounds(GridLayer::kRoadMarkers);
   if (!bounds) return;
-  origin_ = bounds->min;
   const Vector2i size = bounds->max - bounds->min + Vector2i::Ones();
+  if (!checkPictureSize(size.cast<double>())) return;  // of a drive that went astray
+  origin_ = bounds->min;
   cells_ = cv::Mat1b::zeros(size.y(), size.x());
   grid.forEachKnown(GridLayer::kRoadMarkers, [&](const Vector2i& index, const GridCell& cell) {
     const Vector2i i = index - origin_;

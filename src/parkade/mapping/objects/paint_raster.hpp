@@ -10,12 +10,13 @@
 
 #include "parkade/mapping/parking_map.hpp"
 
-// Inside of painted_arrows.hpp and painted_crossings.hpp.
+// Inside of painted_arrows.hpp, painted_crossings.hpp and slots/reserved_slots.hpp.
 
 namespace parkade {
 
 /// What the layer of road markers holds of the paint of one class, over the box of all that it
-/// knows. World frame.
+/// knows. World frame. Empty where that box is too large for a picture: of a drive that went
+/// astray.
 class PaintRaster {
  public:
   enum class Cell : std::uint8_t { kUnknown, kBare, kPaint };  ///< bare: anything but that paint
@@ -39,7 +40,7 @@ class PaintRaster {
   [[nodiscard]] std::vector<Eigen::Vector2d> paintIn(
       const std::vector<Eigen::Vector2d>& outline) const;
   /// The cells of paint, by their middles, in patches that lie farther from each other than apart,
-  /// m; without those of fewer cells.
+  /// m (0: that do not touch); without those of fewer cells.
   [[nodiscard]] std::vector<std::vector<Eigen::Vector2d>> patches(double apart,
                                                                   std::size_t fewest) const;
 

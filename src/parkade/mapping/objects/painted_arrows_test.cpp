@@ -151,6 +151,14 @@ TEST_F(PaintedArrows, NoneIsToldInASlotOrWithoutOneToLearnFrom) {
   EXPECT_EQ(map.objects.size(), 3U);
 }
 
+TEST_F(PaintedArrows, TheMapOfADriveThatWentAstrayStaysAsItIs) {
+  tellThree();
+  paint("straight", SE2(M_PI_2, {20.0, 12.0}));
+  map.grid.set(GridLayer::kRoadMarkers, {20000000, 20000000}, SemanticClass::kFloor, 1.0F);
+  completeArrows(map);
+  EXPECT_EQ(map.objects.size(), 3U);
+}
+
 TEST_F(PaintedArrows, WornPiecesOfTheToldAreDrawn) {
   const auto worn = [](const Vector2d& p) { return std::abs(p.x() + 0.5) < 0.3; };
   paint("straight", SE2(0.0, {3.0, 3.0}));

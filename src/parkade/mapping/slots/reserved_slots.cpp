@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
+#include <numeric>
 #include <optional>
 
 #include "parkade/core/median.hpp"
+#include "parkade/mapping/objects/paint_raster.hpp"
 #include "parkade/mapping/slots/row_pattern.hpp"
 #include "parkade/mapping/slots/row_sides.hpp"
-#include "parkade/mapping/storage/map_drawing.hpp"
 
 namespace parkade::slot_rows {
 namespace {
@@ -155,26 +155,14 @@ class ReservedSlotFinder {
 
 std::vector<Vector2d> findPaintedSigns(const LayeredGrid& grid) {
   constexpr double kLeast = 0.85;  // m^2
-  std::vector<Vector2d> signs;
-  const auto bounds = grid.bounds(GridLayer::kRoadMarkers);
-  if (!bounds) return signs;
-  const Vector2i size = bounds->max - bounds->min + Vector2i::Ones();
-  if (!checkPictureSize(size.cast<double>())) return signs;  // of a drive that went astray
-  cv::Mat painted = cv::Mat::zeros(size.y(), size.x(), CV_8UC1);
-  grid.forEachKnown(GridLayer::kRoadMarkers, [&](const Vector2i& index, const GridCell& cell) {
-    if (cell.believed() != SemanticClass::kPaintedNumber) return;
-    const Vector2i p = index - bounds->min;
-    painted.at<std::uint8_t>(p.y(), p.x()) = 255;
-  });
-  cv::Mat labels;
-  cv::Mat stats;
-  cv::Mat middles;
-  const int count = cv::connectedComponentsWithStats(painted, labels, stats, middles);
   const double cell_m2 = grid.resolution() * grid.resolution();
-  for (int i = 1; i < count; ++i) {
-    if (stats.at<int>(i, cv::CC_STAT_AREA) * cell_m2 < kLeast) continue;
-    const Vector2d middle(middles.at<double>(i, 0) + 0.5, middles.at<double>(i, 1) + 0.5);
-    signs.push_back(grid.resolution() * (bounds->min.cast<double>() + middle));
+  std::vector<Vector2d> signs;
+  const PaintRaster numbers(grid, SemanticClass::kPaintedNumber);
+  for (const std::vector<Vector2d>& patch : numbers.patches(0.0, 1)) {
+    const auto cells = static_cast<double>(patch.size());
+    if (cells * cell_m2 < kLeast) continue;
+    signs.push_back(std::accumulate(patch.begin(), patch.end(), Vector2d(Vector2d::Zero())) /
+                    cells);
   }
   return signs;
 }
