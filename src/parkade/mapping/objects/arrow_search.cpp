@@ -26,11 +26,12 @@ struct Window {
 
 Window windowAround(const std::vector<Vector2d>& patch, double heading) {
   const SE2 turn(heading, Vector2d::Zero());
+  const SE2 back = turn.inverse();
   Vector2d low = Vector2d::Constant(std::numeric_limits<double>::max());
   Vector2d high = -low;
   for (const Vector2d& cell : patch) {
-    low = low.cwiseMin(turn.inverse() * cell);
-    high = high.cwiseMax(turn.inverse() * cell);
+    low = low.cwiseMin(back * cell);
+    high = high.cwiseMax(back * cell);
   }
   return {turn * SE2(0.0, 0.5 * (low + high)), 0.5 * (high - low)};
 }

@@ -94,7 +94,7 @@ void ArrowTemplate::finish() {
       const double share = (shows_(row, column) + 0.1) / (seen_(row, column) + 1.0);
       if (seen_(row, column) < 1.0F || share < kLeast) continue;
       const double shown = kWear * share;
-      places_.push_back({placeOf(row, column), share, std::log(shown / kByChance),
+      places_.push_back({placeOf(row, column), std::log(shown / kByChance),
                          std::log((1.0 - shown) / (1.0 - kByChance))});
     }
   }

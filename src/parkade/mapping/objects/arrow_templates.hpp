@@ -25,7 +25,6 @@ class ArrowTemplate {
   /// against bare floor. docs/math/grid.md, eq. (8).
   struct Place {
     Eigen::Vector2d p = Eigen::Vector2d::Zero();
-    double share = 0.0;  ///< of the arrows that show paint there
     double paint = 0.0;  ///< log-likelihood ratio where the map shows paint
     double bare = 0.0;   ///< the same where it shows floor
   };

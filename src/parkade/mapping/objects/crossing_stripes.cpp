@@ -101,10 +101,11 @@ class StripeFitter {
   [[nodiscard]] CrossingStripes fitAcross(const SE2& T) const {
     constexpr double kCut = 0.05;
     constexpr double kMostPeriod = 1.6;  // m
+    const SE2 T_crossing_map = T.inverse();
     std::vector<double> xs;
     std::vector<double> ys;
     for (const Vector2d& cell : patch_) {
-      const Vector2d p = T.inverse() * cell;
+      const Vector2d p = T_crossing_map * cell;
       xs.push_back(p.x());
       ys.push_back(p.y());
     }
@@ -153,9 +154,10 @@ class StripeFitter {
   void findEnds(CrossingStripes& s) const {
     constexpr double kShows = 0.25;
     constexpr int kMost = 20;
+    const SE2 T_crossing_map = s.T_map_crossing.inverse();
     double highest = 0.0;
     for (const Vector2d& cell : patch_) {
-      highest = std::max(highest, (s.T_map_crossing.inverse() * cell).y());
+      highest = std::max(highest, (T_crossing_map * cell).y());
     }
     bool any = false;
     for (int index = -1; index < kMost && s.begin(index) < highest; ++index) {

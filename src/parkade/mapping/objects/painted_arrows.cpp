@@ -22,22 +22,22 @@ using Eigen::Vector2d;
 using Looks = std::map<std::string, ArrowTemplate>;
 using Outline = std::vector<Vector2d>;
 
-// A convex outline, wider by so much on all sides.
-Outline widened(const Outline& outline, double by) {
+// A convex outline and what lies around it, which is judged with it: its smear and its pieces.
+Outline withSurroundings(const Outline& outline) {
+  constexpr double kAround = 0.3;  // m
   Vector2d middle = Vector2d::Zero();
   for (const Vector2d& p : outline) middle += p / static_cast<double>(outline.size());
   Outline wide;
   for (const Vector2d& p : outline) {
-    wide.emplace_back(p + std::sqrt(2.0) * by * (p - middle).normalized());
+    wide.emplace_back(p + std::sqrt(2.0) * kAround * (p - middle).normalized());
   }
   return wide;
 }
 
 // What one arrow explains is none of another's.
 void hideArrow(const MapObject& object, PaintRaster& raster) {
-  constexpr double kAround = 0.3;  // m
   if (object.semantic_class != SemanticClass::kArrow || object.outline.size() < 3) return;
-  raster.hide(widened(object.outline, kAround));
+  raster.hide(withSurroundings(object.outline));
 }
 
 MapObject arrowObject(const FoundArrow& arrow) {
@@ -71,14 +71,13 @@ void drawArrow(const FoundArrow& arrow, const Outline& outline, LayeredGrid& gri
 // Those told, where the map shows what they are told to be.
 void drawTold(const std::vector<MapObject>& objects, const PaintRaster& raster, const Looks& looks,
               LayeredGrid& grid) {
-  constexpr double kAround = 0.3;  // m
   for (const MapObject& object : objects) {
     const auto look = looks.find(object.text);
     if (object.semantic_class != SemanticClass::kArrow || look == looks.end()) continue;
     const SE2 pose(object.heading, object.position.head<2>());
     const FoundArrow arrow{&look->second, object.text, look->second.align(raster, pose), 0.0};
     const Outline outline = arrowObject(arrow).outline;
-    const std::vector<Vector2d> paint = raster.paintIn(widened(outline, kAround));
+    const std::vector<Vector2d> paint = raster.paintIn(withSurroundings(outline));
     if (fitOf(arrow, raster, paint).isGood()) drawArrow(arrow, outline, grid);
   }
 }
