@@ -9,11 +9,11 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "parkade/semantics/agent_tracker.hpp"
-#include "parkade/semantics/line_extraction.hpp"
-#include "parkade/semantics/object_extraction.hpp"
-#include "parkade/semantics/segmentation.hpp"
-#include "parkade/semantics/slot_extraction.hpp"
+#include "parkade/semantics/lines/line_extraction.hpp"
+#include "parkade/semantics/networks/segmentation.hpp"
+#include "parkade/semantics/slots/slot_extraction.hpp"
+#include "parkade/semantics/standing/agent_tracker.hpp"
+#include "parkade/semantics/standing/object_extraction.hpp"
 
 namespace parkade {
 namespace {

@@ -20,7 +20,7 @@
 #include "parkade/core/progress.hpp"
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
-#include "parkade/semantics/class_map.hpp"
+#include "parkade/semantics/networks/class_map.hpp"
 
 namespace parkade::cli {
 namespace {

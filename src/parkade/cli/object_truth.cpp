@@ -8,7 +8,7 @@
 #include "parkade/cli/marking_box.hpp"
 #include "parkade/geometry/se2.hpp"
 #include "parkade/mapping/frame_evidence.hpp"
-#include "parkade/semantics/marking_pieces.hpp"
+#include "parkade/semantics/markings/marking_pieces.hpp"
 #include "parkade/sim/world/parked_cars.hpp"
 
 namespace parkade::cli {

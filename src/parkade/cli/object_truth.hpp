@@ -7,7 +7,7 @@
 
 #include "parkade/cli/semantic_samples.hpp"
 #include "parkade/semantics/bev_views.hpp"
-#include "parkade/semantics/object_boxes.hpp"
+#include "parkade/semantics/standing/object_boxes.hpp"
 
 namespace parkade::cli {
 

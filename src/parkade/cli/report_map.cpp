@@ -17,7 +17,7 @@
 #include "parkade/io/trajectory_io.hpp"
 #include "parkade/mapping/storage/map_drawing.hpp"
 #include "parkade/mapping/storage/map_file.hpp"
-#include "parkade/semantics/draw_labels.hpp"
+#include "parkade/semantics/drawing/draw_labels.hpp"
 
 namespace parkade::cli {
 namespace {

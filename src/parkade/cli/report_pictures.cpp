@@ -11,9 +11,9 @@
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
 #include "parkade/mapping/storage/map_drawing.hpp"
-#include "parkade/semantics/draw_labels.hpp"
-#include "parkade/semantics/draw_objects.hpp"
-#include "parkade/semantics/draw_slots.hpp"
+#include "parkade/semantics/drawing/draw_labels.hpp"
+#include "parkade/semantics/drawing/draw_objects.hpp"
+#include "parkade/semantics/drawing/draw_slots.hpp"
 #include "parkade/tracking/draw_tracks.hpp"
 #include "parkade/tracking/overlap.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "parkade/cli/semantic_samples.hpp"
 #include "parkade/core/result.hpp"
-#include "parkade/semantics/zone_marker_faces.hpp"
+#include "parkade/semantics/texts/zone_marker_faces.hpp"
 
 namespace parkade::cli {
 

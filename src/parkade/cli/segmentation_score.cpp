@@ -14,8 +14,8 @@
 #include "parkade/eval/label_confusion.hpp"
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
-#include "parkade/semantics/draw_labels.hpp"
-#include "parkade/semantics/segmentation.hpp"
+#include "parkade/semantics/drawing/draw_labels.hpp"
+#include "parkade/semantics/networks/segmentation.hpp"
 
 namespace parkade::cli {
 namespace {

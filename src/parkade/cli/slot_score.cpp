@@ -16,12 +16,12 @@
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
 #include "parkade/pipeline/stitched_views.hpp"
-#include "parkade/semantics/draw_labels.hpp"
-#include "parkade/semantics/draw_slots.hpp"
+#include "parkade/semantics/drawing/draw_labels.hpp"
+#include "parkade/semantics/drawing/draw_slots.hpp"
 #include "parkade/semantics/label_probe.hpp"
-#include "parkade/semantics/line_extraction.hpp"
-#include "parkade/semantics/segmentation.hpp"
-#include "parkade/semantics/slot_extraction.hpp"
+#include "parkade/semantics/lines/line_extraction.hpp"
+#include "parkade/semantics/networks/segmentation.hpp"
+#include "parkade/semantics/slots/slot_extraction.hpp"
 #include "parkade/types/level_frame.hpp"
 
 namespace parkade::cli {

@@ -13,10 +13,10 @@
 #include "parkade/core/units.hpp"
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
-#include "parkade/semantics/class_map.hpp"
-#include "parkade/semantics/guide_text.hpp"
-#include "parkade/semantics/painted_numbers.hpp"
-#include "parkade/semantics/zone_marker_faces.hpp"
+#include "parkade/semantics/markings/painted_numbers.hpp"
+#include "parkade/semantics/networks/class_map.hpp"
+#include "parkade/semantics/texts/guide_text.hpp"
+#include "parkade/semantics/texts/zone_marker_faces.hpp"
 #include "parkade/types/level_frame.hpp"
 
 namespace parkade::cli {

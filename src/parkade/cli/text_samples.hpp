@@ -8,7 +8,7 @@
 #include "parkade/cli/semantic_samples.hpp"
 #include "parkade/core/random.hpp"
 #include "parkade/core/result.hpp"
-#include "parkade/semantics/segmentation.hpp"
+#include "parkade/semantics/networks/segmentation.hpp"
 
 namespace parkade::cli {
 

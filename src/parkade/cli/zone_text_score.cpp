@@ -15,9 +15,9 @@
 #include "parkade/cli/zone_text_truth.hpp"
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
-#include "parkade/semantics/segmentation.hpp"
-#include "parkade/semantics/zone_marker_views.hpp"
-#include "parkade/semantics/zone_text_reader.hpp"
+#include "parkade/semantics/networks/segmentation.hpp"
+#include "parkade/semantics/texts/zone_marker_views.hpp"
+#include "parkade/semantics/texts/zone_text_reader.hpp"
 #include "parkade/types/level_frame.hpp"
 
 namespace parkade::cli {

@@ -10,8 +10,8 @@
 
 #include "parkade/core/log.hpp"
 #include "parkade/core/split.hpp"
-#include "parkade/semantics/class_map.hpp"
-#include "parkade/semantics/zone_text_reader.hpp"
+#include "parkade/semantics/networks/class_map.hpp"
+#include "parkade/semantics/texts/zone_text_reader.hpp"
 #include "parkade/types/level_frame.hpp"
 #include "parkade/types/text_evidence.hpp"
 

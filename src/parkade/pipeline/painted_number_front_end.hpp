@@ -10,7 +10,7 @@
 #include "parkade/core/options.hpp"
 #include "parkade/core/result.hpp"
 #include "parkade/semantics/bev_views.hpp"
-#include "parkade/semantics/painted_numbers.hpp"
+#include "parkade/semantics/markings/painted_numbers.hpp"
 #include "parkade/types/pose_estimate.hpp"
 #include "parkade/types/samples.hpp"
 #include "parkade/types/semantic_features.hpp"

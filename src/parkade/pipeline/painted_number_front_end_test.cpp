@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "parkade/core/random.hpp"
-#include "parkade/semantics/painted_number_test_support.hpp"
+#include "parkade/semantics/markings/painted_number_test_support.hpp"
 
 namespace parkade {
 namespace {

@@ -11,7 +11,7 @@
 #include "parkade/core/check.hpp"
 #include "parkade/geometry/se2.hpp"
 #include "parkade/pipeline/stitched_views.hpp"
-#include "parkade/semantics/segmentation.hpp"
+#include "parkade/semantics/networks/segmentation.hpp"
 #include "parkade/types/level_frame.hpp"
 
 namespace parkade {

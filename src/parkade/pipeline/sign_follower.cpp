@@ -4,8 +4,8 @@
 
 #include <utility>
 
-#include "parkade/semantics/guide_text.hpp"
-#include "parkade/semantics/zone_marker_views.hpp"
+#include "parkade/semantics/texts/guide_text.hpp"
+#include "parkade/semantics/texts/zone_marker_views.hpp"
 
 namespace parkade {
 SignFollower::SignFollower(const SignFollowerOptions& options)

@@ -8,9 +8,9 @@
 #include "parkade/camera/camera.hpp"
 #include "parkade/core/options.hpp"
 #include "parkade/core/result.hpp"
-#include "parkade/semantics/zone_marker_faces.hpp"
-#include "parkade/semantics/zone_marker_tracker.hpp"
-#include "parkade/semantics/zone_text_reader.hpp"
+#include "parkade/semantics/texts/zone_marker_faces.hpp"
+#include "parkade/semantics/texts/zone_marker_tracker.hpp"
+#include "parkade/semantics/texts/zone_text_reader.hpp"
 #include "parkade/types/semantic_class.hpp"
 
 namespace parkade {

@@ -7,10 +7,10 @@
 
 #include "parkade/core/log.hpp"
 #include "parkade/geometry/se2.hpp"
-#include "parkade/semantics/level_views.hpp"
-#include "parkade/semantics/segmentation.hpp"
-#include "parkade/semantics/zone_marker_views.hpp"
-#include "parkade/semantics/zone_text_reader.hpp"
+#include "parkade/semantics/networks/segmentation.hpp"
+#include "parkade/semantics/texts/level_views.hpp"
+#include "parkade/semantics/texts/zone_marker_views.hpp"
+#include "parkade/semantics/texts/zone_text_reader.hpp"
 #include "parkade/types/level_frame.hpp"
 
 namespace parkade {

@@ -11,7 +11,7 @@
 #include <fstream>
 #include <opencv2/core.hpp>
 
-#include "parkade/semantics/class_map.hpp"
+#include "parkade/semantics/networks/class_map.hpp"
 
 namespace parkade {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "parkade/semantics/line_chains.hpp"
+#include "parkade/semantics/lines/line_chains.hpp"
 #include "parkade/types/semantic_features.hpp"
 
 namespace parkade {

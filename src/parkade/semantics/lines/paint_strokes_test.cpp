@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/semantics/lines/paint_strokes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+
+#include "parkade/types/semantic_class.hpp"
+#include "parkade/types/semantic_features.hpp"
+
+namespace parkade {
+namespace {
+
+constexpr double kScale = 0.04;  // m per px
+
+cv::Mat floorOf(int size) {
+  return {size, size, CV_8UC1, cv::Scalar(static_cast<int>(SemanticClass::kFloor))};
+}
+
+void paint(cv::Mat& labels, const cv::Rect& where, SemanticClass c) {
+  labels(where).setTo(static_cast<int>(c));
+}
+
+SemanticClass at(const cv::Mat& labels, int v, int u) {
+  return static_cast<SemanticClass>(labels.at<std::uint8_t>(v, u));
+}
+
+TEST(PaintStrokes, AStrokesEndTakesItsClass) {
+  cv::Mat labels = floorOf(128);
+  paint(labels, {60, 10, 3, 100}, SemanticClass::kSlotLine);
+  paint(labels, {60, 95, 3, 15}, SemanticClass::kLaneLine);  // 0.6 m of it
+  paint(labels, {60, 10, 3, 6}, SemanticClass::kArrow);
+  uniteStrokes(labels, kScale);
+  for (int v = 10; v < 110; ++v) EXPECT_EQ(at(labels, v, 61), SemanticClass::kSlotLine) << v;
+  EXPECT_EQ(at(labels, 61, 58), SemanticClass::kFloor);
+}
+
+TEST(PaintStrokes, OtherThingsStayWhatTheyAre) {
+  cv::Mat labels = floorOf(128);
+  paint(labels, {60, 10, 3, 100}, SemanticClass::kSlotLine);
+  paint(labels, {70, 10, 3, 15}, SemanticClass::kLaneLine);    // touches nothing
+  paint(labels, {20, 110, 100, 8}, SemanticClass::kStopLine);  // large
+  paint(labels, {63, 40, 4, 8}, SemanticClass::kVehicle);      // no paint
+  paint(labels, {50, 60, 10, 4}, SemanticClass::kWheelStop);   // stands on the floor
+  const cv::Mat before = labels.clone();
+  uniteStrokes(labels, kScale);
+  EXPECT_EQ(cv::countNonZero(labels != before), 0);
+}
+
+// A T of two strokes, and an arrow with a head, all labelled arrow; doubt: log-odds by which slot
+// line is the less likely.
+cv::Mat strokesAndArrow(double doubt, cv::Mat& slot_line) {
+  cv::Mat labels = floorOf(128);
+  paint(labels, {20, 20, 4, 60}, SemanticClass::kArrow);
+  paint(labels, {24, 48, 30, 4}, SemanticClass::kArrow);
+  paint(labels, {90, 40, 4, 50}, SemanticClass::kArrow);
+  for (int v = 0; v < 24; ++v) {
+    const int half = 1 + v / 2;
+    paint(labels, {92 - half, 18 + v, 2 * half, 1}, SemanticClass::kArrow);
+  }
+  paint(labels, {94, 80, 20, 3}, SemanticClass::kSlotLine);
+  slot_line = cv::Mat(labels.size(), CV_8UC1, cv::Scalar(255.0 - kSlotLinePerLogOdds * doubt));
+  return labels;
+}
+
+TEST(PaintStrokes, AHeadlessArrowIsSlotLines) {
+  cv::Mat slot_line;
+  cv::Mat labels = strokesAndArrow(3.0, slot_line);
+  tellStrokesFromArrows(slot_line, kScale, labels);
+  EXPECT_EQ(at(labels, 30, 21), SemanticClass::kSlotLine);
+  EXPECT_EQ(at(labels, 49, 40), SemanticClass::kSlotLine);
+  EXPECT_EQ(at(labels, 60, 91), SemanticClass::kArrow);  // has a head
+  EXPECT_EQ(at(labels, 38, 88), SemanticClass::kArrow);
+}
+
+TEST(PaintStrokes, WhatTheNetworkIsSureOfStaysAnArrow) {
+  cv::Mat slot_line;
+  const cv::Mat before = strokesAndArrow(6.0, slot_line);
+  cv::Mat labels = before.clone();
+  tellStrokesFromArrows(slot_line, kScale, labels);
+  EXPECT_EQ(cv::countNonZero(labels != before), 0);
+  tellStrokesFromArrows(cv::Mat(), kScale, labels);  // a network without slot lines
+  EXPECT_EQ(cv::countNonZero(labels != before), 0);
+}
+
+}  // namespace
+}  // namespace parkade

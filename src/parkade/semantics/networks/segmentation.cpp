@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/semantics/networks/segmentation.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "parkade/core/check.hpp"
+#include "parkade/semantics/lines/paint_strokes.hpp"
+#include "parkade/semantics/networks/label_decoding.hpp"
+#include "parkade/semantics/networks/onnx_network.hpp"
+
+namespace parkade {
+namespace {
+
+constexpr int kMultiple = 32;  // sizes that a network of any size takes
+
+int roundUp(int value) {
+  return (value + kMultiple - 1) / kMultiple * kMultiple;
+}
+
+}  // namespace
+
+struct SegmentationNetwork::Impl {
+  ClassMap map;
+  cv::dnn::Net net;
+  cv::Mat input;   // N x C x H x W
+  cv::Mat logits;  // the same, of the output
+  cv::Mat resized;
+
+  Status forward(const cv::Mat& bgr);
+  [[nodiscard]] Status checkOutput(const cv::Size& size) const;
+  Status run(const cv::Mat& image, cv::Mat& labels, cv::Mat& confidence, cv::Mat& slot_line);
+};
+
+Status SegmentationNetwork::Impl::forward(const cv::Mat& bgr) {
+  const std::array<int, 4> shape{1, 3, bgr.rows, bgr.cols};
+  input.create(4, shape.data(), CV_32F);
+  for (int v = 0; v < bgr.rows; ++v) {
+    const std::uint8_t* in = bgr.ptr<std::uint8_t>(v);
+    for (int c = 0; c < 3; ++c) {
+      const int source = map.rgb ? 2 - c : c;
+      const auto mean = static_cast<float>(map.mean[static_cast<std::size_t>(c)]);
+      const auto scale = static_cast<float>(map.scale[static_cast<std::size_t>(c)]);
+      float* out = input.ptr<float>(0, c) + static_cast<std::ptrdiff_t>(v) * bgr.cols;
+      for (int u = 0; u < bgr.cols; ++u) {
+        out[u] = (static_cast<float>(in[3 * u + source]) - mean) * scale;
+      }
+    }
+  }
+  Result<cv::Mat> out = runOnnx(net, input, map.network);
+  if (!out) return out.error();
+  logits = std::move(out).value();
+  return checkOutput(bgr.size());
+}
+
+Status SegmentationNetwork::Impl::checkOutput(const cv::Size& size) const {
+  const int classes = static_cast<int>(map.classes.size());
+  const std::string shape = shapeOf(logits);
+  if (logits.dims != 4 || logits.size[0] != 1 || logits.type() != CV_32F) {
+    return Error{fmt::format(
+        "{}: the network's output is {}; expected 1 x channels x height x width numbers",
+        map.network, shape)};
+  }
+  const bool blocks = logits.size[1] == 4 * classes && 2 * logits.size[2] == size.height &&
+                      2 * logits.size[3] == size.width;
+  if (!blocks && logits.size[1] != classes) {
+    return Error{fmt::format(
+        "{}: {} classes, but the network {} gives {} for a picture of {} x {} px; expected {} "
+        "channels (or {} at half the size, four per class)",
+        map.path, classes, map.network, shape, size.width, size.height, classes, 4 * classes)};
+  }
+  return {};
+}
+
+Status SegmentationNetwork::Impl::run(const cv::Mat& image, cv::Mat& labels, cv::Mat& confidence,
+                                      cv::Mat& slot_line) {
+  PARKADE_CHECK(image.type() == CV_8UC3 || image.type() == CV_8UC1, "picture of type {}",
+                image.type());
+  cv::Mat bgr = image;
+  if (image.channels() == 1) cv::cvtColor(image, bgr, cv::COLOR_GRAY2BGR);
+  const Status status = forward(bgr);
+  if (!status) return status;
+  decodeLogits(logits, map.classes, bgr.size(), labels, confidence, slot_line);
+  return {};
+}
+
+SegmentationNetwork::SegmentationNetwork(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+SegmentationNetwork::SegmentationNetwork(SegmentationNetwork&&) noexcept = default;
+SegmentationNetwork& SegmentationNetwork::operator=(SegmentationNetwork&&) noexcept = default;
+SegmentationNetwork::~SegmentationNetwork() = default;
+
+const ClassMap& SegmentationNetwork::classMap() const {
+  return impl_->map;
+}
+
+Result<SegmentationNetwork> SegmentationNetwork::loadOrOwn(const std::string& class_map_path,
+                                                           const std::string& own_name) {
+  const Result<std::string> path = namedOrOwnModel(class_map_path, own_name);
+  if (!path) return path.error();
+  return load(*path);
+}
+
+Result<SegmentationNetwork> SegmentationNetwork::load(const std::string& class_map_path) {
+  Result<ClassMap> map = readClassMap(class_map_path);
+  if (!map) return map.error();
+  auto impl = std::make_unique<Impl>();
+  impl->map = std::move(map).value();
+  Result<cv::dnn::Net> net = readOnnx(impl->map.network, class_map_path);
+  if (!net) return net.error();
+  impl->net = std::move(net).value();
+  const Status status =
+      impl->forward(cv::Mat(impl->map.height, impl->map.width, CV_8UC3, cv::Scalar::all(0)));
+  if (!status) return status.error();
+  return SegmentationNetwork(std::move(impl));
+}
+
+Result<BevLabels> SegmentationNetwork::segment(const BevImage& bev) {
+  const ClassMap& map = impl_->map;
+  if (map.metres_per_px <= 0.0) {
+    return Error{
+        fmt::format("{}: this network is for camera views (it has no input: "
+                    "metres_per_px), not for bird's-eye pictures",
+                    map.path)};
+  }
+  const double factor = bev.geometry.metres_per_px / map.metres_per_px;
+  const cv::Size size(static_cast<int>(std::lround(bev.image.cols * factor)),
+                      static_cast<int>(std::lround(bev.image.rows * factor)));
+  if (!map.any_size && (size.width != map.width || size.height != map.height)) {
+    return Error{fmt::format(
+        "{}: the network takes {} x {} px of {} m, the bird's-eye picture has {} x {} px of {} m; "
+        "set bev.width_px, bev.height_px and bev.metres_per_px to match",
+        map.path, map.width, map.height, map.metres_per_px, bev.image.cols, bev.image.rows,
+        bev.geometry.metres_per_px)};
+  }
+  cv::Mat image = bev.image;
+  if (size != image.size()) {
+    cv::resize(image, impl_->resized, size, 0, 0, factor < 1.0 ? cv::INTER_AREA : cv::INTER_LINEAR);
+    image = impl_->resized;
+  }
+  const cv::Size padded(map.any_size ? roundUp(size.width) : size.width,
+                        map.any_size ? roundUp(size.height) : size.height);
+  if (padded != size) {
+    cv::copyMakeBorder(image, image, 0, padded.height - size.height, 0, padded.width - size.width,
+                       cv::BORDER_CONSTANT, cv::Scalar::all(0));
+  }
+  BevLabels result;
+  result.t_ns = bev.t_ns;
+  result.geometry = bev.geometry;
+  cv::Mat& slot_line = result.slot_line;
+  const Status status = impl_->run(image, result.labels, result.confidence, slot_line);
+  if (!status) return status.error();
+  if (size != bev.image.size() || padded != size) {
+    const cv::Rect used(cv::Point(), size);
+    cv::resize(result.labels(used).clone(), result.labels, bev.image.size(), 0, 0,
+               cv::INTER_NEAREST);
+    cv::resize(result.confidence(used).clone(), result.confidence, bev.image.size(), 0, 0,
+               cv::INTER_NEAREST);
+    if (!slot_line.empty()) {
+      cv::resize(slot_line(used).clone(), slot_line, bev.image.size(), 0, 0, cv::INTER_NEAREST);
+    }
+  }
+  tellStrokesFromArrows(slot_line, bev.geometry.metres_per_px, result.labels);
+  uniteStrokes(result.labels, bev.geometry.metres_per_px);
+  const cv::Mat unseen = bev.valid == 0;
+  result.labels.setTo(static_cast<int>(SemanticClass::kUnknown), unseen);
+  result.confidence.setTo(0, unseen);
+  if (!slot_line.empty()) slot_line.setTo(0, unseen);
+  return result;
+}
+
+Result<ViewLabels> SegmentationNetwork::segmentView(const cv::Mat& image) {
+  cv::Mat input = image;
+  const cv::Size size(impl_->map.width, impl_->map.height);
+  if (image.size() != size) {
+    const bool smaller = size.width < image.cols;
+    cv::resize(image, impl_->resized, size, 0, 0, smaller ? cv::INTER_AREA : cv::INTER_LINEAR);
+    input = impl_->resized;
+  }
+  ViewLabels result;
+  cv::Mat no_lines;
+  const Status status = impl_->run(input, result.labels, result.confidence, no_lines);
+  if (!status) return status.error();
+  return result;
+}
+
+}  // namespace parkade

@@ -1,0 +1,216 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/semantics/slots/slot_candidates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "parkade/core/median.hpp"
+#include "parkade/geometry/planar.hpp"
+
+namespace parkade {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kSquare = 0.1392;      // cosine of 82 degrees: what is nearer to 90 is square
+constexpr double kMostSlant = 0.82;     // cosine of 35 degrees
+constexpr double kAlongFront = 0.9848;  // cosine of 10 degrees
+
+class MarkPairing {
+ public:
+  MarkPairing(const std::vector<SlotMark>& marks, const LabelProbe& probe,
+              const SlotOptions& options)
+      : marks_(marks), probe_(probe), options_(options) {}
+
+  std::vector<SlotCandidate> pairs() {
+    for (const SlotMark& left : marks_) {
+      for (const SlotMark& right : marks_) {
+        if (std::optional<SlotCandidate> candidate = pair(left, right)) {
+          candidates_.push_back(*candidate);
+        }
+      }
+    }
+    completeDepths();
+    return std::move(candidates_);
+  }
+
+ private:
+  [[nodiscard]] std::optional<SlotCandidate> pair(const SlotMark& left,
+                                                  const SlotMark& right) const {
+    if (left.side == right.side || left.inward.dot(right.inward) < kParallelSides) {
+      return std::nullopt;
+    }
+    SlotCandidate c;
+    c.left = &left;
+    c.right = &right;
+    c.inward = (left.visible * left.inward + right.visible * right.inward).normalized();
+    const Vector2d front = right.p - left.p;
+    const double length = front.norm();
+    // Left of who drives in is left of inward.
+    const double width = cross(c.inward, -front);
+    if (width <= 0.0) return std::nullopt;
+    if (!fitsRow(left, length) || !fitsRow(right, length)) return std::nullopt;
+    const double cosine = std::abs(front.dot(c.inward)) / length;
+    if (cosine > kMostSlant) return std::nullopt;
+    for (const SlotMark* mark : {&left, &right}) {
+      if (mark->across.isZero()) continue;
+      if (std::abs(mark->across.dot(front)) < kAlongFront * length) return std::nullopt;
+    }
+    c.shape = cosine > kSquare ? SlotShape::kSlanted : SlotShape::kPerpendicular;
+    if (width < options_.min_width_m || width > options_.max_width_m) {
+      if (c.shape == SlotShape::kSlanted || length < options_.min_parallel_length_m ||
+          length > options_.max_parallel_length_m) {
+        return std::nullopt;
+      }
+      c.shape = SlotShape::kParallel;
+    }
+    if (hasMarkBetween(c) || !linesTurnIn(c)) return std::nullopt;
+    if (!measureDepth(c)) return std::nullopt;
+    tellMarking(c);
+    return c;
+  }
+
+  // Faint lines make slots as wide as the others of their row.
+  [[nodiscard]] static bool fitsRow(const SlotMark& mark, double length) {
+    constexpr double kSame = 0.12;  // m
+    return !mark.isFaint() || std::abs(length - mark.row_width) < kSame;
+  }
+
+  // Where a line meets a side at the entrance, it runs (or its bar points) towards the other side.
+  [[nodiscard]] bool linesTurnIn(const SlotCandidate& c) const {
+    const Vector2d u = (c.right->p - c.left->p).normalized();
+    constexpr double kLook = 0.5;  // m: bars are short, worn lines have holes
+    constexpr double kPaint = 0.25;
+    const auto turnsIn = [&](const SlotMark& mark, double sign) {
+      if (mark.across.isZero()) return true;
+      const double from = 0.5 * mark.width + 0.04;
+      const LabelProbe::Shares seen =
+          probe_.along(mark.p + sign * from * u, mark.p + sign * kLook * u, 0.04);
+      return seen.paint + seen.hidden > kPaint;
+    };
+    return turnsIn(*c.left, 1.0) && turnsIn(*c.right, -1.0);
+  }
+
+  // Another side between the two: these are not neighbours.
+  [[nodiscard]] bool hasMarkBetween(const SlotCandidate& c) const {
+    const Vector2d front = c.right->p - c.left->p;
+    const double length = front.norm();
+    constexpr double kOff = 0.4;
+    return std::any_of(marks_.begin(), marks_.end(), [&](const SlotMark& mark) {
+      if (mark.inward.dot(c.inward) < kParallelSides) return false;
+      const double s = (mark.p - c.left->p).dot(front) / length;
+      return s > kOff && s < length - kOff &&
+             std::abs(cross(front, mark.p - c.left->p)) < kOff * length;
+    });
+  }
+
+  // From rear corners, or from where side lines end. False where they contradict a slot.
+  [[nodiscard]] bool measureDepth(SlotCandidate& c) const {
+    const bool parallel = c.shape == SlotShape::kParallel;
+    const double least = parallel ? options_.min_parallel_depth_m : options_.min_depth_m;
+    const double most = parallel ? options_.max_parallel_depth_m : options_.max_depth_m;
+    std::array<double, 2> ends{};
+    int seen = 0;
+    int shorter = 0;
+    for (int k = 0; k < 2; ++k) {
+      const SlotMark& front = k == 0 ? *c.left : *c.right;
+      double best = 0.0;
+      bool ended = false;
+      for (const SlotMark& mark : marks_) {
+        if (mark.side != front.side || mark.inward.dot(front.inward) > 0.0) continue;
+        const double depth = (mark.p - front.p).dot(c.inward);
+        if (depth >= least && depth <= most && (best == 0.0 || depth < best)) best = depth;
+        if (depth > 0.0 && depth < least && endsFor(front, depth, least)) ended = true;
+      }
+      ends[static_cast<std::size_t>(k)] = best;
+      if (best > 0.0) ++seen;
+      if (ended) ++shorter;
+    }
+    if (seen == 2) {
+      constexpr double kSame = 0.25;
+      if (std::abs(ends[0] - ends[1]) < kSame) c.depth = 0.5 * (ends[0] + ends[1]);
+    }
+    if (parallel && std::min(c.left->visible, c.right->visible) > most + 0.3) return false;
+    // One alone may be worn or in the dark.
+    return shorter < 2 || c.depth > 0.0;
+  }
+
+  // Whether a side line goes on nowhere between a place on it and a slot's least depth: a line that
+  // short belongs to no such slot. Worn ones go on.
+  [[nodiscard]] bool endsFor(const SlotMark& front, double depth, double least) const {
+    constexpr double kStart = 0.3;  // m
+    constexpr double kLeast = 1.0;  // m: far from the car lines fade a little before their end
+    if (least - depth < kLeast) return false;
+    const LabelProbe::Shares rest = probe_.along(front.p + (depth + kStart) * front.inward,
+                                                 front.p + least * front.inward, 0.08);
+    return rest.floor > 0.9;
+  }
+
+  void tellMarking(SlotCandidate& c) const {
+    const Vector2d front = c.right->p - c.left->p;
+    const double length = front.norm();
+    const Vector2d u = front / length;
+    constexpr double kPastBar = 0.5;
+    const auto bar = [&](const SlotMark& mark, double sign) {
+      const double from = 0.5 * mark.width + 0.04;
+      return probe_.along(mark.p + sign * from * u, mark.p + sign * (from + 0.14) * u, 0.04).paint >
+             0.6;
+    };
+    const double middle =
+        probe_.along(c.left->p + kPastBar * u, c.right->p - kPastBar * u, 0.04).paint;
+    const bool inner = bar(*c.left, 1.0) || bar(*c.right, -1.0);
+    const bool outer = bar(*c.left, -1.0) || bar(*c.right, 1.0);
+    if (middle > 0.5) {
+      c.marking = SlotMarking::kClosed;
+    } else if (inner) {
+      c.marking = outer ? SlotMarking::kT : SlotMarking::kL;
+    }
+  }
+
+  // Slots of one garage are alike: the middle of what is seen serves where a rear is hidden.
+  void completeDepths() {
+    for (const SlotShape shape :
+         {SlotShape::kPerpendicular, SlotShape::kParallel, SlotShape::kSlanted}) {
+      std::vector<double> depths;
+      for (const SlotCandidate& c : candidates_) {
+        if (c.shape == shape && c.depth > 0.0) depths.push_back(c.depth);
+      }
+      double usual =
+          shape == SlotShape::kParallel ? options_.usual_parallel_depth_m : options_.usual_depth_m;
+      if (!depths.empty()) usual = median(std::move(depths));
+      for (SlotCandidate& c : candidates_) {
+        if (c.shape != shape) continue;
+        // Sides may be seen further than that.
+        const bool parallel = shape == SlotShape::kParallel;
+        const double most = parallel ? options_.max_parallel_depth_m : options_.max_depth_m;
+        const double seen = std::min(std::max(c.left->visible, c.right->visible), most);
+        c.complete(std::max(usual, seen));
+      }
+    }
+  }
+
+  const std::vector<SlotMark>& marks_;
+  const LabelProbe& probe_;
+  const SlotOptions& options_;
+  std::vector<SlotCandidate> candidates_;
+};
+
+}  // namespace
+
+double SlotCandidate::width() const {
+  return std::abs(cross(inward, front()));
+}
+
+void SlotCandidate::complete(double usual) {
+  const double d = depth > 0.0 ? depth : usual;
+  corners = {left->p, right->p, right->p + d * inward, left->p + d * inward};
+}
+
+std::vector<SlotCandidate> pairSlotMarks(const std::vector<SlotMark>& marks,
+                                         const LabelProbe& probe, const SlotOptions& options) {
+  return MarkPairing(marks, probe, options).pairs();
+}
+
+}  // namespace parkade

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "parkade/semantics/label_probe.hpp"
+#include "parkade/semantics/slots/slot_extraction.hpp"
+#include "parkade/semantics/slots/slot_marks.hpp"
+#include "parkade/types/semantic_features.hpp"
+
+namespace parkade {
+
+/// Side lines of one row: cosine of 6 degrees.
+constexpr double kParallelSides = 0.9945;
+
+/// Two marks that may be the entrance of a slot, left and right as who drives in sees them. Level
+/// frame. The marks are those it was made of, which must outlive it.
+struct SlotCandidate {
+  const SlotMark* left = nullptr;
+  const SlotMark* right = nullptr;
+  Eigen::Vector2d inward = Eigen::Vector2d::UnitX();  ///< unit, along the sides
+  SlotShape shape = SlotShape::kPerpendicular;
+  SlotMarking marking = SlotMarking::kOpen;
+  double depth = 0.0;  ///< m along inward; 0: not seen
+  double score = 0.0;  ///< log-odds
+  std::array<Eigen::Vector2d, 4> corners = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(),
+                                            Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+
+  [[nodiscard]] Eigen::Vector2d front() const { return right->p - left->p; }
+  /// m, between the side lines.
+  [[nodiscard]] double width() const;
+  /// m, of the corners: as seen, or as others have it.
+  [[nodiscard]] double length() const { return (corners[3] - corners[0]).norm(); }
+  /// Sets the corners; usual (m) is the depth where none was seen.
+  void complete(double usual);
+};
+
+/// All pairs of marks that have a slot's size and contradict none: no mark between them, lines at
+/// the corners that turn towards each other, sides that do not both end too early; faint lines make
+/// slots of their row's width. Their score is 0 yet (slot_ranking.hpp).
+std::vector<SlotCandidate> pairSlotMarks(const std::vector<SlotMark>& marks,
+                                         const LabelProbe& probe, const SlotOptions& options);
+
+}  // namespace parkade

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/semantics/slots/slot_marks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "parkade/semantics/slots/slot_test_support.hpp"
+
+namespace parkade {
+namespace {
+
+using Eigen::Vector2d;
+
+LineSegment segment(const Vector2d& begin, const Vector2d& end) {
+  LineSegment line;
+  line.begin = begin;
+  line.end = end;
+  line.width = kLine;
+  line.semantic_class = SemanticClass::kSlotLine;
+  return line;
+}
+
+// Two lines of an L whose measured parts end 0.5 m before its corner at (2, -3).
+std::vector<LineSegment> cornerless() {
+  return {segment({1.5, -3.0}, {0.5, -3.0}), segment({2.0, -3.5}, {2.0, -5.5})};
+}
+
+int meetings(const PaintedFloor& floor) {
+  int count = 0;
+  for (const SlotMark& mark :
+       findSlotMarks(floor.bev.image, LabelProbe(floor.labels), cornerless())) {
+    if (mark.across.isZero()) continue;
+    EXPECT_LT((mark.p - Vector2d(2.0, -3.0)).norm(), 0.02);  // half a pixel
+    ++count;
+  }
+  return count;
+}
+
+TEST(SlotMarks, LinesMeetOverPaintThatIsNotMeasured) {
+  PaintedFloor floor;
+  floor.line({2.0, -3.0}, {0.5, -3.0}, kLine);
+  floor.line({2.0, -3.0}, {2.0, -5.5}, kLine);
+  EXPECT_GT(meetings(floor), 0);
+}
+
+TEST(SlotMarks, LinesDoNotMeetOverBareFloor) {
+  PaintedFloor floor;
+  floor.line({1.5, -3.0}, {0.5, -3.0}, kLine);
+  floor.line({2.0, -3.5}, {2.0, -5.5}, kLine);
+  EXPECT_EQ(meetings(floor), 0);
+}
+
+}  // namespace
+}  // namespace parkade

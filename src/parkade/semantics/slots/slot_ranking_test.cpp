@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/semantics/slots/slot_ranking.hpp"
+
+#include "parkade/semantics/slots/slot_test_support.hpp"
+
+namespace parkade {
+namespace {
+
+using Eigen::Vector2d;
+
+// Two slots, the gap of a pillar, two slots: the line behind the gap is not labelled.
+Row besideGap(PaintedFloor& floor, double gap) {
+  Row row;
+  row.x0 = 7.0;
+  row.marking = SlotMarking::kOpen;
+  row.paint(floor);
+  Row behind = row;
+  behind.x0 = row.front(row.count).x() - gap;
+  for (int i = 1; i <= behind.count; ++i) floor.line(behind.front(i), behind.rear(i), kLine);
+  return row;
+}
+
+TEST(SlotRanking, TakesNoGapIntoASlot) {
+  PaintedFloor floor;
+  const Row row = besideGap(floor, 0.8);
+  const double x = row.front(row.count).x();
+  floor.polygon({{x - 0.3, -8.0}, {x - 0.3, -2.9}, {x - 1.1, -2.9}, {x - 1.1, -8.0}},
+                SemanticClass::kPillar, 60);
+  const std::vector<SlotObservation> slots = slotsOf(floor);
+  EXPECT_EQ(slotAt(slots, row.front(row.count)), nullptr);
+  EXPECT_EQ(slots.size(), 3U);
+  for (const SlotObservation& slot : slots) {
+    EXPECT_NEAR((slot.corners[1] - slot.corners[0]).norm(), row.width, 0.05);
+  }
+}
+
+TEST(SlotRanking, WideSlotsMayStandAlone) {
+  Row row;
+  row.width = 3.4;
+  row.marking = SlotMarking::kOpen;
+  PaintedFloor floor;
+  row.paint(floor);
+  expectRow(row, slotsOf(floor), SlotShape::kPerpendicular, 0.02);
+}
+
+// A car hides where narrower slots, as those beside, would have a line.
+TEST(SlotRanking, AWideSlotIsOneWhereItsFrontEnds) {
+  for (const bool goes_on : {false, true}) {
+    Row narrow;
+    narrow.x0 = 7.0;
+    narrow.count = 3;
+    Row wide = narrow;
+    wide.x0 = narrow.front(narrow.count).x() - 0.8;
+    wide.width = 3.6;
+    wide.count = 1;
+    PaintedFloor floor;
+    narrow.paint(floor);
+    wide.paint(floor);
+    if (goes_on) floor.line(wide.front(1), wide.front(1) - Vector2d(0.8, 0.0), kLine);
+    floor.polygon({wide.front(0) + Vector2d(-0.3, -0.5), wide.front(1) + Vector2d(0.3, -0.5),
+                   wide.rear(1) + Vector2d(0.3, 0.0), wide.rear(0) + Vector2d(-0.3, 0.0)},
+                  SemanticClass::kVehicle, 30);
+    EXPECT_EQ(slotAt(slotsOf(floor), wide.front(0)) == nullptr, goes_on);
+  }
+}
+
+TEST(SlotRanking, SlotsEndWhereLaneLinesBegin) {
+  Row row;
+  row.width = 3.4;
+  row.count = 1;
+  row.marking = SlotMarking::kT;
+  PaintedFloor floor;
+  row.paint(floor);
+  EXPECT_EQ(slotsOf(floor).size(), 1U);
+  floor.line(row.front(1) + Vector2d(0.2, 0.0), row.front(1) + Vector2d(1.2, 0.0), kLine,
+             SemanticClass::kLaneLine);
+  EXPECT_TRUE(slotsOf(floor).empty());
+}
+
+TEST(SlotRanking, RearsAreNoEntrances) {
+  Row row;
+  row.depth = 4.8;
+  PaintedFloor floor;
+  row.paint(floor);
+  EXPECT_EQ(slotsOf(floor).size(), 2U);
+  for (int i = 0; i < row.count; ++i) {  // this is where they are entered from beyond
+    const Vector2d stop = row.front(i) + Vector2d(-0.35, -0.6);
+    floor.line(stop, stop - Vector2d(1.8, 0.0), 0.2, SemanticClass::kWheelStop, 150);
+  }
+  for (const SlotObservation& slot : slotsOf(floor)) {
+    EXPECT_GT((slot.corners[0] - row.front(0)).norm(), 1.0);
+    EXPECT_LT(slot.corners[0].y(), kFront - 4.0);
+  }
+}
+
+TEST(SlotRanking, AnAislesEdgeIsNoSide) {
+  Row row;  // along the aisle, its end towards the car
+  row.x0 = 2.5;
+  row.width = 6.0;
+  row.depth = 2.4;
+  row.count = 1;
+  PaintedFloor floor;
+  floor.polygon({{9.0, -8.0}, {9.0, -2.0}, {1.0, -2.0}, {1.0, -8.0}}, SemanticClass::kUnknown, 0);
+  row.paint(floor);
+  floor.line(row.front(1) - Vector2d(0.4, 0.0), row.front(1) - Vector2d(3.0, 0.0), kLine,
+             SemanticClass::kLaneLine);
+  for (const SlotObservation& slot : slotsOf(floor)) {
+    EXPECT_EQ(slot.shape, SlotShape::kParallel);
+  }
+}
+
+// Cars hide all but the bars of Ts on both sides of the aisle.
+TEST(SlotRanking, BarsAreNoSides) {
+  PaintedFloor floor;
+  for (const double y : {-2.8, 2.8}) {
+    for (const double x : {-0.5, 2.0, 4.5}) {
+      const Vector2d p(x, y);
+      floor.line(p - Vector2d(0.4, 0.0), p + Vector2d(0.4, 0.0), kLine);
+      floor.line(p, p + Vector2d(0.0, y > 0.0 ? 0.8 : -0.8), kLine);
+    }
+  }
+  for (const SlotObservation& slot : slotsOf(floor)) {
+    EXPECT_LT(std::abs(slot.corners[0].y() - slot.corners[1].y()), 0.1);
+  }
+}
+
+TEST(SlotRanking, ShortSidesWillDo) {
+  Row row;
+  row.count = 3;
+  row.depth = 0.65;  // cars hide the rest
+  row.marking = SlotMarking::kOpen;
+  PaintedFloor floor;
+  row.paint(floor);
+  floor.polygon({{9.0, -8.0}, {9.0, -3.2}, {-4.0, -3.2}, {-4.0, -8.0}}, SemanticClass::kVehicle,
+                30);
+  EXPECT_EQ(slotsOf(floor).size(), 3U);
+}
+
+}  // namespace
+}  // namespace parkade

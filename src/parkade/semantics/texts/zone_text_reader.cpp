@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/semantics/texts/zone_text_reader.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <filesystem>
+
+#include "parkade/core/check.hpp"
+#include "parkade/core/yaml.hpp"
+#include "parkade/semantics/networks/onnx_network.hpp"
+#include "parkade/semantics/texts/zone_marker_faces.hpp"
+
+namespace parkade {
+namespace {
+
+constexpr int kBeam = 8;
+constexpr int kReadings = 5;
+
+/// What the YAML file says.
+struct TextNetworkFile {
+  std::string network;
+  std::string letters;
+  double mean = 0.0;
+  double scale = 1.0;
+};
+
+TextNetworkFile parseTextNetwork(const YamlNode& root, const std::string& path) {
+  root.allowOnly({"network", "input", "letters"});
+  TextNetworkFile file;
+  file.network =
+      (std::filesystem::path(path).parent_path() / root.at("network").asString()).string();
+  const YamlNode input = root.at("input");
+  input.allowOnly({"width", "height", "mean", "scale"});
+  if (input.at("width").asInt() != kZonePatchWidth ||
+      input.at("height").asInt() != kZonePatchHeight) {
+    input.fail(fmt::format("{} x {} px; faces are straightened to {} x {} px",
+                           input.at("width").asInt(), input.at("height").asInt(), kZonePatchWidth,
+                           kZonePatchHeight));
+  }
+  file.mean = input.at("mean").asDouble();
+  file.scale = input.at("scale").asDouble();
+  file.letters = root.at("letters").asString();
+  for (std::size_t i = 0; i < file.letters.size(); ++i) {
+    if (file.letters.find(file.letters[i], i + 1) != std::string::npos) {
+      root.at("letters").fail(fmt::format("'{}' comes twice", file.letters[i]));
+    }
+  }
+  if (file.letters.empty()) root.at("letters").fail("expected at least one letter");
+  return file;
+}
+
+}  // namespace
+
+struct ZoneTextReader::Impl {
+  TextNetworkFile file;
+  cv::dnn::Net net;
+  cv::Mat input;
+
+  // Logits, one row per letter (and the blank).
+  Result<cv::Mat> forward(const cv::Mat& patch) {
+    const std::array<int, 4> shape{1, 3, patch.rows, patch.cols};
+    input.create(4, shape.data(), CV_32F);
+    for (int v = 0; v < patch.rows; ++v) {
+      const auto* in = patch.ptr<cv::Vec3b>(v);
+      for (int c = 0; c < 3; ++c) {
+        float* out = input.ptr<float>(0, c) + static_cast<std::ptrdiff_t>(v) * patch.cols;
+        for (int u = 0; u < patch.cols; ++u) {
+          out[u] = static_cast<float>((in[u][2 - c] - file.mean) * file.scale);  // RGB
+        }
+      }
+    }
+    Result<cv::Mat> result = runOnnx(net, input, file.network);
+    if (!result) return result.error();
+    const cv::Mat out = std::move(result).value();
+    const int channels = static_cast<int>(file.letters.size()) + 1;
+    if (out.dims != 4 || out.size[1] != channels || out.size[2] != 1) {
+      return Error{fmt::format(
+          "{}: the network's output is {}; expected 1 x {} x 1 x steps numbers: a blank and {} "
+          "letters",
+          file.network, shapeOf(out), channels, file.letters.size())};
+    }
+    return cv::Mat(channels, out.size[3], CV_32F, const_cast<float*>(out.ptr<float>())).clone();
+  }
+};
+
+ZoneTextReader::ZoneTextReader(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+ZoneTextReader::ZoneTextReader(ZoneTextReader&&) noexcept = default;
+ZoneTextReader& ZoneTextReader::operator=(ZoneTextReader&&) noexcept = default;
+ZoneTextReader::~ZoneTextReader() = default;
+
+const std::string& ZoneTextReader::letters() const {
+  return impl_->file.letters;
+}
+
+Result<ZoneTextReader> ZoneTextReader::load(const std::string& path) {
+  Result<TextNetworkFile> file = parseYamlFile<TextNetworkFile>(
+      path, [&](const YamlNode& root) { return parseTextNetwork(root, path); });
+  if (!file) return file.error();
+  auto impl = std::make_unique<Impl>();
+  impl->file = std::move(file).value();
+  Result<cv::dnn::Net> net = readOnnx(impl->file.network, path);
+  if (!net) return net.error();
+  impl->net = std::move(net).value();
+  const Result<cv::Mat> tried =
+      impl->forward(cv::Mat(kZonePatchHeight, kZonePatchWidth, CV_8UC3, cv::Scalar::all(0)));
+  if (!tried) return tried.error();
+  return ZoneTextReader(std::move(impl));
+}
+
+Result<std::vector<TextReading>> ZoneTextReader::read(const cv::Mat& patch,
+                                                      const std::string& only) {
+  PARKADE_CHECK(
+      patch.type() == CV_8UC3 && patch.cols == kZonePatchWidth && patch.rows == kZonePatchHeight,
+      "patch of {} x {} px, type {}", patch.cols, patch.rows, patch.type());
+  Result<cv::Mat> logits = impl_->forward(patch);
+  if (!logits) return logits.error();
+  constexpr double kNever = -1e4;
+  for (std::size_t i = 0; i < letters().size() && !only.empty(); ++i) {
+    if (only.find(letters()[i]) == std::string::npos) {
+      logits->row(static_cast<int>(i) + 1).setTo(cv::Scalar(kNever));
+    }
+  }
+  return decodeSequence(*logits, impl_->file.letters, kBeam, kReadings);
+}
+
+}  // namespace parkade
