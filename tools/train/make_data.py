@@ -5,7 +5,7 @@
 
     tools/train/make_data.py --program build/release/parkade --out DATA --garages 0-99
     tools/train/make_data.py --out VIEWS --garages 3000-3249 --frames 5 --views
-    tools/train/make_data.py --out TEXTS --garages 2000-2131 --frames 8 --texts
+    tools/train/make_data.py --out TEXTS --garages 2000-2131 --frames 8 --texts --any-letter
 
 Every garage has its own layout, style, light, occupancy, people, rig and attitude errors, drawn from
 its seed. Goes on where an earlier call ended. Seeds from 5000 on are kept for tests.
@@ -42,6 +42,8 @@ def main():
                         help="all cameras' views and no stitched pictures")
     parser.add_argument("--texts", action="store_true",
                         help="straightened texts to learn reading from instead of pictures")
+    parser.add_argument("--any-letter", action="store_true",
+                        help="with --texts: zones begin at a letter drawn for each garage, not at A")
     arguments = parser.parse_args()
     first, last = (int(text) for text in arguments.garages.split("-"))
     if last >= 5000:
@@ -56,9 +58,11 @@ def main():
         if arguments.views:
             command += ["--set", "stitched=false"]
         if arguments.texts:
+            command += ["--texts"]
+        if arguments.any_letter:
             # Most garages have few rows of zones, which would leave the later letters unlearnt.
             letter = random.Random(seed + 777).choice("ABCDEFGHJKLMNPQRSTUVWXYZ")
-            command += ["--texts", "--set", f"first_zone={letter}"]
+            command += ["--set", f"first_zone={letter}"]
         start = time.time()
         result = subprocess.run(command, capture_output=True, text=True)
         print(f"garage {seed}: {'ok' if result.returncode == 0 else result.stderr.strip()[-300:]}, "

@@ -113,7 +113,7 @@ bool isMisread(const MapSlot& slot, double axis) {
   constexpr double kMore = 2.5;  // than its sides
   const double sides = std::abs(turnFromAxes(inwardOf(slot), axis));
   const double entrance = std::abs(turnFromAxes(slot.corners[1] - slot.corners[0], axis));
-  return slot.shape == SlotShape::kSlanted && sides < kAskew && entrance > kAskew &&
+  return slot.shape != SlotShape::kParallel && sides < kAskew && entrance > kAskew &&
          entrance > kMore * sides;
 }
 

@@ -47,6 +47,15 @@ TEST_F(Squaring, ACornerOfARowIsPutRight) {
   EXPECT_EQ(garage_.told[6].shape, SlotShape::kPerpendicular);
 }
 
+TEST_F(Squaring, WhatPicturesTookForASquareSlotIsPutRightAsWell) {
+  MapSlot slot = Garage::slotAt(2, 0);
+  slot.corners[1].y() += 0.4;  // 9 degrees
+  slot.corners[2].y() += 0.4;
+  garage_.told.push_back(slot);
+  EXPECT_EQ(square().moved, std::vector<std::size_t>{6});
+  expectAt(garage_.told[6], Garage::slotAt(2, 0));
+}
+
 // Away from all rows.
 MapSlot alone() {
   MapSlot slot = misread(Garage::slotAt(2, 0));
@@ -168,6 +177,14 @@ TEST_F(Squaring, ARowThatIsTurnedAsAWholeStays) {
   }
   garage_.told.push_back(turned(Garage::slotAt(3, 0), 4.2, 3.8));
   EXPECT_TRUE(slot_rows::turnToAxes(garage_.told).empty());
+}
+
+TEST_F(Squaring, EntrancesAloneMakeNoTurnedRow) {
+  for (const int place : {0, 1, 2}) {
+    garage_.told.push_back(turned(Garage::slotAt(2, place), 0.2, 5.0));
+  }
+  garage_.told.push_back(turned(Garage::slotAt(3, 0), -0.1, 4.5));
+  EXPECT_EQ(slot_rows::turnToAxes(garage_.told), (std::vector<std::size_t>{6, 7, 8, 9}));
 }
 
 TEST(SlotRow, OneMisreadCornerHardlyTurnsARow) {

@@ -30,8 +30,9 @@ Turn turnNear(const std::vector<MapSlot>& slots, double angle, double reach) {
   return turn;
 }
 
+constexpr double kSides = 1.5 * M_PI / 180.0;
+
 bool isTurned(const MapSlot& slot, double axis) {
-  constexpr double kSides = 1.5 * M_PI / 180.0;
   constexpr double kEntrance = 2.5 * M_PI / 180.0;
   constexpr double kMost = 8.0 * M_PI / 180.0;
   if (slot.shape == SlotShape::kSlanted) return false;
@@ -40,13 +41,14 @@ bool isTurned(const MapSlot& slot, double axis) {
   return sides < kMost && entrance < kMost && (sides > kSides || entrance > kEntrance);
 }
 
-// Whether a row of its own is turned as the slot is.
+// Whether a row of its own is turned as the slot is: its sides too.
 bool isOneOfManyTurned(std::size_t index, const std::vector<MapSlot>& slots, double axis) {
   constexpr double kNear = 14.0;  // m
   constexpr double kAlike = 1.0 * M_PI / 180.0;
   constexpr int kMany = 3;
   const MapSlot& slot = slots[index];
   const double sides = turnFromAxes(inwardOf(slot), axis);
+  if (std::abs(sides) < kSides) return false;
   int alike = 0;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     if (i == index || !isTurned(slots[i], axis)) continue;

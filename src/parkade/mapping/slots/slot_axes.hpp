@@ -31,8 +31,9 @@ Eigen::Vector2d axisAlong(const Eigen::Vector2d& v, double axis);
 
 /// Slots that are not slanted have their sides and entrances along the axes. Those with sides off
 /// by 1.5 to 8 degrees, or entrances by 2.5 to 8, are turned about the middle of their entrance, if
-/// no three others nearby (14 m) are turned as they are: worn lines tell directions badly, and a
-/// row that follows such a slot leads astray. Returns the indices of those turned.
+/// no three others nearby (14 m) are turned as they are, their sides too: worn lines tell
+/// directions badly, and a row that follows such a slot leads astray. Returns the indices of those
+/// turned.
 std::vector<std::size_t> turnToAxes(std::vector<MapSlot>& slots);
 
 }  // namespace parkade::slot_rows
