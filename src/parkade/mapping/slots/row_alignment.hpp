@@ -21,11 +21,11 @@ std::vector<std::size_t> alignRows(std::vector<MapSlot>& slots);
 
 /// A slanted slot has its entrance along the aisle and its sides askew. One that is not parallel,
 /// with its sides along the axes of the garage, which most of its square slots tell, and its
-/// entrance askew is a square one with a corner misread, or none at all. It is made square where its outer corner lies on the
-/// line of another slot's entrance, entered the same way (14 m), or where both its sides are
-/// painted in the map for half of what is seen of them; else it is to go. One with its entrance and
-/// its sides askew gets an entrance along the axis through its outer corner, where another slot's
-/// entrance lies on that line and no slot in its way.
+/// entrance askew is a square one with a corner misread, or none at all. It is made square where
+/// its outer corner lies on the line of another slot's entrance, entered the same way (14 m), or
+/// where both its sides are painted in the map for half of what is seen of them; else it is to go.
+/// One with its entrance and its sides askew gets an entrance along the axis through its outer
+/// corner, where another slot's entrance lies on that line and no slot in its way.
 struct SquaredSlots {
   std::vector<std::size_t> moved;
   std::vector<std::size_t> wrong;  ///< indices; the slots stay as they are

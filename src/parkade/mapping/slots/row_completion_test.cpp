@@ -88,6 +88,20 @@ TEST(RowCompletion, LeavesABareBayAlone) {
   EXPECT_TRUE(garage.complete().added.empty());
 }
 
+// Two that wait where an aisle crosses between bays full of slots: the third place would be a free
+// one in plain sight without a line. Where one is painted it is a bay.
+TEST(RowCompletion, CarsInABareBayMakeNoSlots) {
+  for (const bool has_paint : {true, false}) {
+    Garage garage;
+    garage.tell(0, {0, 1, 2});
+    garage.tell(2, {0, 1, 2});
+    garage.paintTold();
+    for (const int place : {0, 1}) garage.park(Garage::slotAt(1, place));
+    if (has_paint) garage.paint(Garage::slotAt(1, 2));
+    EXPECT_EQ(garage.complete().added.size(), has_paint ? 3U : 0U);
+  }
+}
+
 // Between bays full of slots a parked vehicle and one line are enough, beyond them not.
 TEST(RowCompletion, BelievesABayBetweenTwoOthersSooner) {
   for (const bool between : {true, false}) {

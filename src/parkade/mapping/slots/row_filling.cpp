@@ -170,9 +170,14 @@ class GapFiller {
     SlotEvidence::Line entrance;
     double known = 0.0;
     double vehicles = 0.0;
+    bool is_bare = false;
+    bool shows_lines = false;
     for (std::size_t i = 0; i < places.size(); ++i) {
       const SlotEvidence& e = places[i].evidence;
       if (isDenied(e) || (!is_enclosed && likelihood_.lacksSide(e))) return {};
+      is_bare = is_bare || likelihood_.lacksAllLines(e);
+      shows_lines = shows_lines || std::max({likelihood_.side(e.left), likelihood_.side(e.right),
+                                             likelihood_.entrance(e.entrance)}) > 0.0;
       // Lines that known slots have as well say nothing new.
       (i == 0 && after_slot ? known : filling.merit) += likelihood_.side(e.left);
       if (i + 1 == places.size())
@@ -183,6 +188,8 @@ class GapFiller {
       entrance.seen_m += e.entrance.seen_m;
       filling.slots.push_back(places[i].slot);
     }
+    // Aisles cross between two pillars, and cars wait there.
+    if (!after_slot && !before_slot && is_bare && !shows_lines) return {};
     // Slots of other shapes have their entrances there as well: they count once.
     if (entrance.seen_m > 0.0) entrance.painted /= entrance.seen_m;
     filling.merit += likelihood_.entrance(entrance);

@@ -102,14 +102,26 @@ double SlotLikelihood::whole(const SlotEvidence& evidence) const {
          vehicle(evidence) + number(evidence) + stop(evidence);
 }
 
+bool SlotLikelihood::isPaintedAndFree(const SlotEvidence& evidence) const {
+  constexpr double kWorn = 0.8;   // contrast of sides told, on average
+  constexpr double kEmpty = 0.2;  // covered by vehicles at most
+  return sides_.contrast >= kWorn * sides_.all && !showsNumber(evidence) && !showsStop(evidence) &&
+         evidence.vehicle <= kEmpty;
+}
+
+bool SlotLikelihood::lacksAllLines(const SlotEvidence& evidence) const {
+  constexpr double kSeen = 1.4;  // m of each
+  const auto is_bare = [](const SlotEvidence::Line& line) {
+    return line.seen_m > kSeen && !shows(line);
+  };
+  return isPaintedAndFree(evidence) && is_bare(evidence.entrance) && is_bare(evidence.left) &&
+         is_bare(evidence.right);
+}
+
 bool SlotLikelihood::lacksSide(const SlotEvidence& evidence) const {
-  constexpr double kWorn = 0.8;     // contrast of sides told, on average
   constexpr double kSeen = 0.9;     // of the slot
-  constexpr double kEmpty = 0.2;    // covered by vehicles at most
   constexpr double kPlainly = 3.0;  // m of a side in sight
-  if (sides_.contrast < kWorn * sides_.all) return false;
-  if (showsNumber(evidence) || showsStop(evidence)) return false;
-  if (evidence.seen < kSeen || evidence.vehicle > kEmpty) return false;
+  if (!isPaintedAndFree(evidence) || evidence.seen < kSeen) return false;
   const auto is_bare = [](const SlotEvidence::Line& line) {
     return line.seen_m > kPlainly && !shows(line);
   };

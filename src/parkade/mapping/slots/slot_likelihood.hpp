@@ -26,6 +26,9 @@ class SlotLikelihood {
   /// Whether the slot would be free and in plain sight, and one of its sides is bare all the same.
   /// Never where the paint of the slots told is worn, nor where a number or a wheel stop is in it.
   [[nodiscard]] bool lacksSide(const SlotEvidence& evidence) const;
+  /// Whether it would be free, and its sides and its entrance are bare as far as they are in sight;
+  /// never, likewise, where paint is worn or a number or a wheel stop is in it.
+  [[nodiscard]] bool lacksAllLines(const SlotEvidence& evidence) const;
 
  private:
   struct Lines {
@@ -35,6 +38,10 @@ class SlotLikelihood {
     void add(const SlotEvidence::Line& line);
     [[nodiscard]] double logOdds(const SlotEvidence::Line& line) const;
   };
+  // Whether slots here have lines that can be missed, and the place nothing that hides them or that
+  // stands in slots only.
+  [[nodiscard]] bool isPaintedAndFree(const SlotEvidence& evidence) const;
+
   Lines sides_;
   Lines entrances_;
   int slots_ = 0;
