@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "parkade/cli/sample_score.hpp"
+#include "parkade/eval/statistics.hpp"
 #include "parkade/geometry/so3.hpp"
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
@@ -125,13 +126,6 @@ class SlotScore : public SampleScore {
   std::array<Count, 3> shapes_;
   std::array<Count, 4> markings_;
 };
-
-double quantile(std::vector<double> values, double q) {
-  if (values.empty()) return 0.0;
-  const auto at = static_cast<std::size_t>(q * static_cast<double>(values.size() - 1) + 0.5);
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
-  return values[at];
-}
 
 std::vector<TrueSlot> SlotScore::trueSlots(const SemanticSampler& sampler,
                                            const SemanticSample& sample,
