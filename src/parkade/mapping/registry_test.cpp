@@ -159,6 +159,32 @@ TEST(SlotRegistry, AvailabilityFollowsTheWorldAndFades) {
   for (const MapSlot& slot : registry.slots(later)) EXPECT_NEAR(slot.probability_free, 0.5, 0.02);
 }
 
+TEST(SlotRegistry, WhatIsSeenAcrossNeighboursSaysLittleOnceTheEntranceWasSeenOver) {
+  Plan plan = makePlan(1, 40.0, 0.0, 3);
+  Random random(2);
+  const SE2 pose(0.0, {20.0, 0.0});
+  TimeNs t_ns = 0;
+  const auto look = [&](SlotRegistry& registry, int times, bool occupied, double over_entrance) {
+    for (PlanSlot& slot : plan.slots) slot.occupied = occupied;
+    const PlanObserver observer(plan, {});
+    for (int k = 0; k < times; ++k, t_ns += kTick) {
+      std::vector<SlotObservation> slots = observer.observe(t_ns, pose, random, false).slots;
+      for (SlotObservation& slot : slots) slot.seen_over_entrance = over_entrance;
+      registry.update(slots, t_ns, pose, 0);
+    }
+  };
+  SlotRegistry passed({});
+  look(passed, 10, false, 1.0);
+  look(passed, 20, true, 0.0);  // another car's smear
+  for (const MapSlot& slot : passed.slots(t_ns)) EXPECT_GT(slot.probability_free, 0.9);
+  look(passed, 10, true, 1.0);  // and a car that came
+  for (const MapSlot& slot : passed.slots(t_ns)) EXPECT_LT(slot.probability_free, 0.1);
+  SlotRegistry from_aside({});
+  look(from_aside, 20, true, 0.0);
+  ASSERT_FALSE(from_aside.slots(t_ns).empty());
+  for (const MapSlot& slot : from_aside.slots(t_ns)) EXPECT_LT(slot.probability_free, 0.1);
+}
+
 TEST(SlotRegistry, DuplicatesFromAWrongPoseMergeWhenAnchorsAreCorrected) {
   const Plan plan = makePlan(1, 40.0, 0.5, 4);
   const PlanObserver observer(plan, {});

@@ -70,6 +70,9 @@ struct SlotObservation {
   SlotShape shape = SlotShape::kPerpendicular;
   SlotMarking marking = SlotMarking::kClosed;
   double probability_free = 0.5;
+  /// Share of its middle that lies behind its entrance as the cameras see it: elsewhere a
+  /// neighbour's car may stand before it, and its smear pass for one in the slot.
+  double seen_over_entrance = 1.0;
   double confidence = 0.0;  ///< that it is a slot, 0 to 1
   /// Readings of the number painted in it, most probable first; empty where none was read.
   std::vector<TextReading> number;

@@ -46,10 +46,12 @@ struct SlotRegistry::Impl {
 
   explicit Impl(const SlotRegistryOptions& given)
       : options(given), numbers(given.min_number_readings, given.number_confidence) {}
-  [[nodiscard]] double fadedLogOdds(const Track& track, TimeNs now_ns) const {
+  // What is left of what was known of a slot's availability: cars come and go.
+  [[nodiscard]] double fade(const Track& track, TimeNs now_ns) const {
     const double seconds = std::max(0.0, toSeconds(now_ns - track.availability_ns));
-    return track.log_odds_free * std::exp(-seconds / options.change_time_s);
+    return std::exp(-seconds / options.change_time_s);
   }
+  void judge(Track& track, const SlotObservation& seen, TimeNs t_ns) const;
   void fuse(Track& track, const Seen& seen, TimeNs t_ns) const;
   void add(const Seen& seen, TimeNs t_ns, std::int64_t anchor);
   void countMisses(const SE2& T_world_vehicle, const std::vector<bool>& was_seen,
@@ -73,6 +75,20 @@ struct SlotRegistry::Impl {
   }
 };
 
+// A view across the neighbours' ground says little once there was one over the entrance.
+void SlotRegistry::Impl::judge(Track& track, const SlotObservation& seen, TimeNs t_ns) const {
+  constexpr double kLimit = 5.0;
+  constexpr double kAside = 0.05;  // what a view from aside alone is worth
+  const double kept = fade(track, t_ns);
+  const double best = std::max(kept * track.best_view, seen.seen_over_entrance);
+  const double weight = (seen.seen_over_entrance + kAside) / (best + kAside);
+  track.log_odds_free = std::clamp(kept * track.log_odds_free + weight * options.availability_gain *
+                                                                    logOdds(seen.probability_free),
+                                   -kLimit, kLimit);
+  track.best_view = best;
+  track.availability_ns = t_ns;
+}
+
 void SlotRegistry::Impl::fuse(Track& track, const Seen& seen, TimeNs t_ns) const {
   const Matrix4 S = track.covariance + seen.covariance;
   const Matrix4 K = S.llt().solve(track.covariance).transpose();
@@ -85,12 +101,7 @@ void SlotRegistry::Impl::fuse(Track& track, const Seen& seen, TimeNs t_ns) const
   track.rear_left += share * (seen.rear_left - track.rear_left);
   track.rear_right += share * (seen.rear_right - track.rear_right);
   track.rear_weight += weight;
-  constexpr double kLimit = 5.0;
-  track.log_odds_free =
-      std::clamp(fadedLogOdds(track, t_ns) +
-                     options.availability_gain * logOdds(seen.source->probability_free),
-                 -kLimit, kLimit);
-  track.availability_ns = t_ns;
+  judge(track, *seen.source, t_ns);
   track.last_seen_ns = t_ns;
   ++track.observations;
   track.confidence += seen.source->confidence;
@@ -264,7 +275,7 @@ std::vector<MapSlot> SlotRegistry::Impl::seenSlots(TimeNs now_ns,
     slot.corner_sigma = std::sqrt(std::max(0.0, track->covariance.trace() / 4.0));
     slot.shape = static_cast<SlotShape>(
         std::max_element(track->shapes.begin(), track->shapes.end()) - track->shapes.begin());
-    slot.probability_free = 1.0 / (1.0 + std::exp(-fadedLogOdds(*track, now_ns)));
+    slot.probability_free = 1.0 / (1.0 + std::exp(-fade(*track, now_ns) * track->log_odds_free));
     slot.observations = track->observations;
     slot.last_seen_ns = track->last_seen_ns;
     if (isPlausible(slot, objects, driven)) seen.push_back(std::move(slot));

@@ -58,6 +58,7 @@ Track merged(Track first, Track second) {
   }
   if (second.availability_ns > first.availability_ns) {
     first.log_odds_free = second.log_odds_free;
+    first.best_view = second.best_view;
     first.availability_ns = second.availability_ns;
   }
   first.last_seen_ns = std::max(first.last_seen_ns, second.last_seen_ns);

@@ -29,6 +29,7 @@ struct Track {
   Eigen::Vector2d rear_right = Eigen::Vector2d::Zero();  // from its right corner
   double rear_weight = 0.0;
   double log_odds_free = 0.0;
+  double best_view = 0.0;  // share of its middle seen over its entrance, of the best picture so far
   TimeNs availability_ns = 0;
   double confidence = 0.0;  // sum
   std::int64_t observations = 0;

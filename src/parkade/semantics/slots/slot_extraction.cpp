@@ -48,6 +48,7 @@ SlotObservation observe(const SlotCandidate& c, const LabelProbe& probe, const B
   slot.marking = c.marking;
   slot.confidence = 1.0 / (1.0 + std::exp(-c.score));
   slot.probability_free = probabilityFree(probe, views, c.corners);
+  slot.seen_over_entrance = shareSeenOverEntrance(probe.labels().geometry, views, c.corners);
   return slot;
 }
 

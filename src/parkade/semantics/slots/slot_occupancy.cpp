@@ -98,6 +98,26 @@ double probability(const Evidence& e) {
   return 1.0 / (1.0 + std::exp(-kStrongest * weight * share));
 }
 
+// Any car covers this middle part: it is narrower and shorter than cars, wherever they stand.
+constexpr int kPointsAcross = 9;
+constexpr int kPointsDeep = 15;
+constexpr int kMiddlePoints = kPointsAcross * kPointsDeep;
+
+std::array<Vector2d, kMiddlePoints> middleOf(const std::array<Vector2d, 4>& corners) {
+  std::array<Vector2d, kMiddlePoints> points;
+  std::size_t k = 0;
+  for (int j = 0; j < kPointsDeep; ++j) {
+    for (int i = 0; i < kPointsAcross; ++i) {
+      // Bilinear coordinates: a across from left to right, b from the entrance to the rear.
+      const double a = 0.3 + 0.4 * i / (kPointsAcross - 1);
+      const double b = 0.25 + 0.5 * j / (kPointsDeep - 1);
+      points[k++] = (1.0 - b) * ((1.0 - a) * corners[0] + a * corners[1]) +
+                    b * ((1.0 - a) * corners[3] + a * corners[2]);
+    }
+  }
+  return points;
+}
+
 class SlotGround {
  public:
   SlotGround(const LabelProbe& probe, const BevViews& views, const std::array<Vector2d, 4>& corners)
@@ -109,11 +129,6 @@ class SlotGround {
         area_(cross(front_, side_)) {}
 
   [[nodiscard]] bool empty() const { return std::abs(area_) < 1e-3; }
-  // Bilinear coordinates: a across from left to right, b from the entrance to the rear.
-  [[nodiscard]] Vector2d at(double a, double b) const {
-    return (1.0 - b) * ((1.0 - a) * corners_[0] + a * corners_[1]) +
-           b * ((1.0 - a) * corners_[3] + a * corners_[2]);
-  }
   // A wheel's foot is where it appears; a body's is nearer, and must not be the next slot's car.
   [[nodiscard]] bool holds(const Ray& ray, double vehicle) const {
     const double edge = ray.nearEdge(vehicle);
@@ -176,17 +191,25 @@ double probabilityFree(const LabelProbe& probe, const BevViews& views,
                        const std::array<Vector2d, 4>& corners) {
   const SlotGround slot(probe, views, corners);
   if (slot.empty()) return 0.5;
-  // Any car covers this middle part: it is narrower and shorter than cars, wherever they stand.
-  constexpr int kAcross = 9;
-  constexpr int kDeep = 15;
   Evidence evidence;
-  for (int j = 0; j < kDeep; ++j) {
-    for (int i = 0; i < kAcross; ++i) {
-      slot.add(slot.at(0.3 + 0.4 * i / (kAcross - 1), 0.25 + 0.5 * j / (kDeep - 1)), evidence);
-    }
-  }
-  evidence.blind /= kAcross * kDeep;
+  for (const Vector2d& p : middleOf(corners)) slot.add(p, evidence);
+  evidence.blind /= kMiddlePoints;
   return probability(evidence);
+}
+
+double shareSeenOverEntrance(const BevGeometry& geometry, const BevViews& views,
+                             const std::array<Vector2d, 4>& corners) {
+  int over = 0;
+  for (const Vector2d& p : middleOf(corners)) {
+    const Vector2d& foot = views.viewAt(geometry, p).foot;
+    // Both corners on either side of the sight line, and the camera before the entrance.
+    const bool between =
+        cross(p - foot, corners[0] - foot) * cross(p - foot, corners[1] - foot) < 0;
+    const Vector2d front = corners[1] - corners[0];
+    const bool before = cross(front, foot - corners[0]) * cross(front, p - corners[0]) < 0;
+    over += between && before ? 1 : 0;
+  }
+  return static_cast<double>(over) / kMiddlePoints;
 }
 
 }  // namespace parkade

@@ -18,4 +18,9 @@ namespace parkade {
 double probabilityFree(const LabelProbe& probe, const BevViews& views,
                        const std::array<Eigen::Vector2d, 4>& corners);
 
+/// Share of a slot's middle whose sight lines come in over its entrance; the others cross another
+/// slot's ground. docs/math/slots.md.
+double shareSeenOverEntrance(const BevGeometry& geometry, const BevViews& views,
+                             const std::array<Eigen::Vector2d, 4>& corners);
+
 }  // namespace parkade

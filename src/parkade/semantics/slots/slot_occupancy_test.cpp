@@ -55,6 +55,19 @@ TEST(SlotOccupancy, AGhostOfTheNextCarSaysNothing) {
   EXPECT_LT(freeWith(floor, 6.0), 0.1);
 }
 
+TEST(SlotOccupancy, SightLinesComeInOverTheEntranceOrAcrossTheNextSlot) {
+  const auto share = [](double seam_x) {
+    return shareSeenOverEntrance(PaintedFloor::geometry(), twoViews(seam_x), kSlot);
+  };
+  EXPECT_EQ(share(6.0), 1.0);   // the camera before the slot shows all of it
+  EXPECT_EQ(share(-6.0), 0.0);  // the one ahead looks across the next slot
+  EXPECT_NEAR(share(-1.25), 0.5, 0.1);
+  // A camera on the slot's other side looks over its rear.
+  BevViews behind = twoViews(6.0);
+  behind.views[1].foot = Vector2d(-1.2, -12.0);
+  EXPECT_EQ(shareSeenOverEntrance(PaintedFloor::geometry(), behind, kSlot), 0.0);
+}
+
 TEST(SlotOccupancy, ACarThatBothCamerasSeeIsOne) {
   PaintedFloor floor;
   floor.polygon({{-0.3, -7.4}, {-0.3, -3.2}, {-2.2, -3.2}, {-2.2, -7.4}}, SemanticClass::kVehicle,
