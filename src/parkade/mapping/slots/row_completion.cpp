@@ -11,6 +11,7 @@
 
 #include "parkade/mapping/map_check.hpp"
 #include "parkade/mapping/slots/bay_ends.hpp"
+#include "parkade/mapping/slots/closed_slots.hpp"
 #include "parkade/mapping/slots/lined_slots.hpp"
 #include "parkade/mapping/slots/reserved_slots.hpp"
 #include "parkade/mapping/slots/row_alignment.hpp"
@@ -108,6 +109,8 @@ class RowCompleter {
     takeBest(
         slot_rows::findLinedSlots(knownWith(result.added), pillars_, grid_, likelihood_, options_),
         result.added);
+    takeBest(slot_rows::findClosedSlots(knownWith(result.added), grid_, likelihood_, options_),
+             result.added);
     if (result.added.size() > known) fillGaps(result.added);
     result.replaced = replaced_;
     for (std::size_t i = 0; i < told_.size(); ++i) {
