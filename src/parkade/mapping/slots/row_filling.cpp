@@ -145,27 +145,48 @@ class GapFiller {
     });
   }
 
+  /// What bounds a gap.
+  struct Ends {
+    bool after_slot = false;
+    bool before_slot = false;
+    bool past_begin = false;  // a slot on the other side of the pillar
+    bool past_end = false;
+    [[nodiscard]] bool both() const { return after_slot && before_slot; }
+    [[nodiscard]] bool none() const { return !after_slot && !before_slot; }
+    [[nodiscard]] bool enclose() const {
+      return (after_slot || past_begin) && (before_slot || past_end);
+    }
+  };
+  [[nodiscard]] Ends endsOf(const Gap& gap) const {
+    return {gap.at_begin == GapEnd::kSlot, gap.at_end == GapEnd::kSlot, hasSlotBy(gap.begin, true),
+            hasSlotBy(gap.end, false)};
+  }
+
   // Between two slots there is hardly room for anything else; a bay between two pillars may hold
   // anything; wide slots are seldom.
-  [[nodiscard]] Filling weigh(const Gap& gap, const std::vector<Place>& places,
-                              bool are_wide) const {
-    const bool after_slot = gap.at_begin == GapEnd::kSlot;
-    const bool before_slot = gap.at_end == GapEnd::kSlot;
+  [[nodiscard]] double priorOf(const Ends& ends, bool are_wide) const {
     constexpr double kBetween = 3.0;
     constexpr double kBeside = 1.0;
     constexpr double kAlone = -2.0;
     constexpr double kOtherShape = -1.0;
     constexpr double kNextBay = 1.5;
     constexpr double kSeldom = -3.0;
-    double prior = after_slot && before_slot ? kBetween : kAlone;
-    if (after_slot != before_slot) prior = kBeside;
-    const bool past_begin = hasSlotBy(gap.begin, true);
-    const bool past_end = hasSlotBy(gap.end, false);
-    if (!after_slot) prior += kNextBay * (past_begin ? 1.0 : 0.0);
-    if (!before_slot) prior += kNextBay * (past_end ? 1.0 : 0.0);
-    const bool is_enclosed = (after_slot || past_begin) && (before_slot || past_end);
+    double prior = ends.both() ? kBetween : ends.none() ? kAlone : kBeside;
+    if (!ends.after_slot && ends.past_begin) prior += kNextBay;
+    if (!ends.before_slot && ends.past_end) prior += kNextBay;
     if (!pattern_.of_row) prior += kOtherShape;
     if (are_wide) prior += kSeldom;
+    return prior;
+  }
+
+  [[nodiscard]] bool showsLines(const SlotEvidence& e) const {
+    return std::max({likelihood_.side(e.left), likelihood_.side(e.right),
+                     likelihood_.entrance(e.entrance)}) > 0.0;
+  }
+
+  [[nodiscard]] Filling weigh(const Gap& gap, const std::vector<Place>& places,
+                              bool are_wide) const {
+    const Ends ends = endsOf(gap);
     Filling filling;
     SlotEvidence::Line entrance;
     double known = 0.0;
@@ -174,14 +195,13 @@ class GapFiller {
     bool shows_lines = false;
     for (std::size_t i = 0; i < places.size(); ++i) {
       const SlotEvidence& e = places[i].evidence;
-      if (isDenied(e) || (!is_enclosed && likelihood_.lacksSide(e))) return {};
+      if (isDenied(e) || (!ends.enclose() && likelihood_.lacksSide(e))) return {};
       is_bare = is_bare || likelihood_.lacksAllLines(e);
-      shows_lines = shows_lines || std::max({likelihood_.side(e.left), likelihood_.side(e.right),
-                                             likelihood_.entrance(e.entrance)}) > 0.0;
+      shows_lines = shows_lines || showsLines(e);
       // Lines that known slots have as well say nothing new.
-      (i == 0 && after_slot ? known : filling.merit) += likelihood_.side(e.left);
+      (i == 0 && ends.after_slot ? known : filling.merit) += likelihood_.side(e.left);
       if (i + 1 == places.size())
-        (before_slot ? known : filling.merit) += likelihood_.side(e.right);
+        (ends.before_slot ? known : filling.merit) += likelihood_.side(e.right);
       vehicles += SlotLikelihood::vehicle(e);
       filling.merit += likelihood_.number(e) + likelihood_.stop(e);
       entrance.painted += e.entrance.contrast() * e.entrance.seen_m;
@@ -189,16 +209,16 @@ class GapFiller {
       filling.slots.push_back(places[i].slot);
     }
     // Aisles cross between two pillars, and cars wait there.
-    if (!after_slot && !before_slot && is_bare && !shows_lines) return {};
+    if (ends.none() && is_bare && !shows_lines) return {};
     // Slots of other shapes have their entrances there as well: they count once.
     if (entrance.seen_m > 0.0) entrance.painted /= entrance.seen_m;
     filling.merit += likelihood_.entrance(entrance);
     // Cars that wait or were read too large cover several places at once.
     constexpr double kOneCar = 2.4;
     // Nor do cars tell how wide slots are.
-    const bool each_in_one = (after_slot && before_slot) || (is_enclosed && !are_wide);
+    const bool each_in_one = ends.both() || (ends.enclose() && !are_wide);
     filling.merit += each_in_one ? vehicles : std::min(vehicles, kOneCar);
-    filling.log_odds = prior + filling.merit;
+    filling.log_odds = priorOf(ends, are_wide) + filling.merit;
     filling.merit = filling.log_odds + known;
     return filling.log_odds > options_.min_log_odds ? filling : Filling{};
   }
