@@ -82,19 +82,28 @@ class GridProbe {
 
 void lookInside(const GridProbe& probe, const Corners& c, double step, SlotEvidence& evidence) {
   constexpr double kBorder = 0.3;  // m
+  constexpr double kAmid = 0.25;   // of width and depth
   const double width = (c[1] - c[0]).norm();
   const double depth = (c[3] - c[0]).norm();
   double all = 0.0;
   double floor = 0.0;
   double vehicles = 0.0;
+  double vehicles_amid = 0.0;
+  double seen_amid = 0.0;
   double number_aside = 0.0;
   for (double a = kBorder; a < width - kBorder; a += step) {
     for (double b = kBorder; b < depth - kBorder; b += step) {
       const Vector2d p = c[0] + a / width * (c[1] - c[0]) + b / depth * (c[3] - c[0]);
       all += 1.0;
       const SemanticClass use = probe.at(GridLayer::kAvailability, p);
-      if (use == SemanticClass::kVehicle) vehicles += 1.0;
-      if (use != SemanticClass::kUnknown) evidence.seen += 1.0;
+      const double parked = use == SemanticClass::kVehicle ? 1.0 : 0.0;
+      vehicles += parked;
+      if (use != SemanticClass::kUnknown) {
+        evidence.seen += 1.0;
+        const bool is_amid = std::abs(a / width - 0.5) < kAmid && std::abs(b / depth - 0.5) < kAmid;
+        seen_amid += is_amid ? 1.0 : 0.0;
+        vehicles_amid += is_amid ? parked : 0.0;
+      }
       if (isStructure(probe.at(GridLayer::kZoneMarkers, p))) evidence.structure_inside += 1.0;
       if (!probe.isSeen(p)) continue;
       floor += 1.0;
@@ -112,6 +121,7 @@ void lookInside(const GridProbe& probe, const Corners& c, double step, SlotEvide
     evidence.number_aside = std::abs(number_aside) / evidence.number_m2;
   }
   if (evidence.seen > 0.0) evidence.vehicle = vehicles / evidence.seen;
+  evidence.vehicle_amid = seen_amid > 0.0 ? vehicles_amid / seen_amid : evidence.vehicle;
   if (all > 0.0) {
     evidence.seen /= all;
     evidence.structure_inside /= all;

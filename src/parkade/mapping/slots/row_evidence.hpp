@@ -33,6 +33,7 @@ struct SlotEvidence {
   double markers_inside = 0.0;  ///< for who drives: arrows, stop lines, crossings, bumps, limits
   double structure_inside = 0.0;
   double vehicle = 0.0;
+  double vehicle_amid = 0.0;  ///< of the middle half alone: any car in the slot covers that
   double seen = 0.0;          ///< of the inside
   double number_m2 = 0.0;     ///< painted number inside, not a share
   double stop_m2 = 0.0;       ///< wheel stop inside, not a share

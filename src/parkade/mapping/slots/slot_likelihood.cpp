@@ -146,8 +146,8 @@ bool isDenied(const SlotEvidence& evidence) {
 
 void setFree(const SlotEvidence& evidence, MapSlot& slot) {
   constexpr double kSeen = 0.15;  // of the slot
-  constexpr double kVehicle = 0.2;
-  if (evidence.seen > kSeen) slot.probability_free = evidence.vehicle > kVehicle ? 0.1 : 0.9;
+  constexpr double kVehicle = 0.25;
+  if (evidence.seen > kSeen) slot.probability_free = evidence.vehicle_amid > kVehicle ? 0.1 : 0.9;
 }
 
 }  // namespace parkade::slot_rows
