@@ -3,10 +3,11 @@
 #include "parkade/mapping/slots/closed_slots.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdint>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "parkade/geometry/se2.hpp"
 #include "parkade/mapping/map_check.hpp"
