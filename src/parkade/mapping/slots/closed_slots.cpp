@@ -112,18 +112,24 @@ std::vector<Run> linesAlong(const LayeredGrid& grid, double angle) {
   return runs;
 }
 
+// The same lines in axes turned by half a turn.
+std::vector<Run> reversed(std::vector<Run> runs) {
+  for (Run& run : runs) run = {-run.y, -run.end, -run.begin, run.paint};
+  return runs;
+}
+
 class ClosedSlotFinder {
  public:
   ClosedSlotFinder(const std::vector<MapSlot>& told, const LayeredGrid& grid,
                    const SlotLikelihood& likelihood, const RowCompletionOptions& options)
       : told_(told), grid_(grid), likelihood_(likelihood), options_(options) {}
 
-  /// Those that lie along one axis.
-  [[nodiscard]] std::vector<Filling> find(double angle) const {
+  /// Those that lie along the x axis of axes turned by angle. across: lines along x of axes turned
+  /// by a quarter more.
+  [[nodiscard]] std::vector<Filling> find(double angle, const std::vector<Run>& along,
+                                          const std::vector<Run>& across) const {
     constexpr double kNarrow = 1.9;  // m
     constexpr double kWide = 2.8;
-    const std::vector<Run> along = linesAlong(grid_, angle);
-    const std::vector<Run> across = linesAlong(grid_, angle + M_PI_2);
     std::vector<Filling> fillings;
     for (const Run& a : along) {
       for (const Run& b : along) {
@@ -240,8 +246,12 @@ std::vector<Filling> findClosedSlots(const std::vector<MapSlot>& told, const Lay
   const std::optional<double> axis = findAxis(told);
   if (!axis) return {};
   const ClosedSlotFinder finder(told, grid, likelihood, options);
-  std::vector<Filling> fillings = finder.find(*axis);
-  for (Filling& filling : finder.find(*axis + M_PI_2)) fillings.push_back(std::move(filling));
+  const std::vector<Run> along = linesAlong(grid, *axis);
+  const std::vector<Run> across = linesAlong(grid, *axis + M_PI_2);
+  std::vector<Filling> fillings = finder.find(*axis, along, across);
+  for (Filling& filling : finder.find(*axis + M_PI_2, across, reversed(along))) {
+    fillings.push_back(std::move(filling));
+  }
   return fillings;
 }
 

@@ -15,6 +15,11 @@ bool shows(const SlotEvidence::Line& line) {
   return line.contrast() > kShown;
 }
 
+// Though so much of it (m) is seen.
+bool isBare(const SlotEvidence::Line& line, double seen_m) {
+  return line.seen_m > seen_m && !shows(line);
+}
+
 bool showsNumber(const SlotEvidence& evidence) {
   constexpr double kPaint = 0.02;  // m^2
   return evidence.number_m2 > kPaint;
@@ -111,21 +116,15 @@ bool SlotLikelihood::isPaintedAndFree(const SlotEvidence& evidence) const {
 
 bool SlotLikelihood::lacksAllLines(const SlotEvidence& evidence) const {
   constexpr double kSeen = 1.4;  // m of each
-  const auto is_bare = [](const SlotEvidence::Line& line) {
-    return line.seen_m > kSeen && !shows(line);
-  };
-  return isPaintedAndFree(evidence) && is_bare(evidence.entrance) && is_bare(evidence.left) &&
-         is_bare(evidence.right);
+  return isPaintedAndFree(evidence) && isBare(evidence.entrance, kSeen) &&
+         isBare(evidence.left, kSeen) && isBare(evidence.right, kSeen);
 }
 
 bool SlotLikelihood::lacksSide(const SlotEvidence& evidence) const {
   constexpr double kSeen = 0.9;     // of the slot
   constexpr double kPlainly = 3.0;  // m of a side in sight
   if (!isPaintedAndFree(evidence) || evidence.seen < kSeen) return false;
-  const auto is_bare = [](const SlotEvidence::Line& line) {
-    return line.seen_m > kPlainly && !shows(line);
-  };
-  return is_bare(evidence.left) || is_bare(evidence.right);
+  return isBare(evidence.left, kPlainly) || isBare(evidence.right, kPlainly);
 }
 
 bool isDenied(const SlotEvidence& evidence) {
