@@ -3,6 +3,8 @@
 #include "parkade/semantics/standing/agent_slots.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace parkade {
@@ -18,10 +20,15 @@ Vector2d placeIn(const SlotObservation& slot, const Vector2d& p) {
   return axes.inverse() * (p - slot.corners[0]);
 }
 
+constexpr double kBefore = 0.8;  // m that a car sticks out of its slot
+
+double depthOf(const SlotObservation& slot) {
+  return (slot.corners[3] - slot.corners[0]).norm();
+}
+
 // Whether it lies between the sides, and not far before the entrance.
 bool isWithin(const SlotObservation& slot, const Vector2d& place, double margin) {
-  constexpr double kBefore = 0.8;  // m that a car sticks out
-  const double depth = (slot.corners[3] - slot.corners[0]).norm();
+  const double depth = depthOf(slot);
   return place.x() > margin && place.x() < 1.0 - margin && place.y() > -kBefore &&
          place.y() < depth;
 }
@@ -69,6 +76,33 @@ std::size_t findSlotChange(const std::vector<Vector2d>& swept,
     return i;
   }
   return 0;
+}
+
+std::optional<double> findRowHeading(const std::vector<Vector2d>& floor,
+                                     const std::vector<SlotObservation>& slots) {
+  constexpr double kBeyond = 3.0;  // slots that a row goes on for
+  constexpr double kMost = 0.7;    // of the points
+  std::optional<double> heading;
+  double least = kBeyond;
+  for (const SlotObservation& slot : slots) {
+    if (slot.shape == SlotShape::kParallel) continue;
+    const double depth = depthOf(slot);
+    double beyond = 0.0;  // mean, in widths
+    int within = 0;
+    for (const Vector2d& p : floor) {
+      const Vector2d place = placeIn(slot, p);
+      if (place.y() < -kBefore || place.y() > depth) continue;
+      ++within;
+      beyond += std::max(0.0, std::abs(place.x() - 0.5) - 0.5);
+    }
+    if (within < kMost * static_cast<double>(floor.size())) continue;
+    beyond /= within;
+    if (beyond >= least) continue;
+    least = beyond;
+    const Vector2d axis = slot.corners[3] - slot.corners[0];
+    heading = std::atan2(axis.y(), axis.x());
+  }
+  return heading;
 }
 
 }  // namespace parkade

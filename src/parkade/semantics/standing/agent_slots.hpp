@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "parkade/types/semantic_features.hpp"
@@ -15,5 +16,11 @@ namespace parkade {
 /// beyond the first slot's side. 0 where it does not.
 std::size_t findSlotChange(const std::vector<Eigen::Vector2d>& swept,
                            const std::vector<SlotObservation>& slots);
+
+/// Cars that stand in a row of slots, told or beyond those that are, lie along them: the direction
+/// (rad) of the nearest slot whose row most of the points (m, of an edge on the floor) lie in.
+/// Nothing where they lie in none, or in one of slots along the way.
+std::optional<double> findRowHeading(const std::vector<Eigen::Vector2d>& floor,
+                                     const std::vector<SlotObservation>& slots);
 
 }  // namespace parkade

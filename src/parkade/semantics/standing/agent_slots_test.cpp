@@ -47,5 +47,24 @@ TEST(AgentSlots, ACarThatPassesInFrontIsOne) {
   EXPECT_EQ(findSlotChange(swept, {slotAt(0.0), slotAt(2.5)}), 0U);
 }
 
+TEST(AgentSlots, RowsGoOnBeyondTheSlotsThatAreTold) {
+  std::vector<Vector2d> front;
+  addFace({5.5, 3.4}, {7.4, 3.4}, front);  // of a car one slot further
+  const std::optional<double> heading = findRowHeading(front, {slotAt(0.0)});
+  ASSERT_TRUE(heading.has_value());
+  EXPECT_NEAR(*heading, M_PI_2, 1e-9);
+  EXPECT_FALSE(findRowHeading(front, {}).has_value());
+  for (Vector2d& p : front) p.x() += 10.0;  // another row
+  EXPECT_FALSE(findRowHeading(front, {slotAt(0.0)}).has_value());
+  std::vector<Vector2d> flank;
+  addFace({-1.0, 1.5}, {3.5, 1.5}, flank);  // on the aisle
+  EXPECT_FALSE(findRowHeading(flank, {slotAt(0.0)}).has_value());
+  SlotObservation along = slotAt(0.0);
+  along.shape = SlotShape::kParallel;
+  std::vector<Vector2d> parked;
+  addFace({0.3, 3.4}, {2.2, 3.4}, parked);
+  EXPECT_FALSE(findRowHeading(parked, {along}).has_value());
+}
+
 }  // namespace
 }  // namespace parkade

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "parkade/geometry/planar.hpp"
@@ -80,15 +81,22 @@ std::size_t findGap(const Points& swept, const Eigen::Vector2d& viewer) {
   return 0;
 }
 
-// Where points on the floor that are too many for one car part best into two; 0 where they are not.
-std::size_t findSizeLimit(const Points& floor, const Eigen::Vector2d& viewer) {
+// Whether they reach farther than a car; row: the direction that it lies in, where that is known.
+bool areTooMany(const GroundBox& box, std::optional<double> row) {
   constexpr double kLongest = 5.8;  // m: no car is longer, or this wide, with its mirrors
   constexpr double kWidest = 2.7;
+  if (!row) return box.size.maxCoeff() >= kLongest || box.size.minCoeff() >= kWidest;
+  const int across = std::abs(std::cos(*row - box.heading)) > M_SQRT1_2 ? 1 : 0;
+  return box.size[across] >= kWidest;
+}
+
+// Where points on the floor that are too many for one car part best into two; 0 where they are not.
+std::size_t findSizeLimit(const Points& floor, const Eigen::Vector2d& viewer,
+                          std::optional<double> row) {
   constexpr double kStep = 0.3;   // m between the places that are tried
   constexpr double kLeast = 1.0;  // m of each car
   double whole = 0.0;
-  const GroundBox box = fitFaces(floor, viewer, &whole);
-  if (box.size.maxCoeff() < kLongest && box.size.minCoeff() < kWidest) return 0;
+  if (!areTooMany(fitFaces(floor, viewer, &whole, row), row)) return 0;
   std::size_t best = 0;
   double least = whole * static_cast<double>(floor.size());
   Eigen::Vector2d last = floor.front();
@@ -99,8 +107,8 @@ std::size_t findSizeLimit(const Points& floor, const Eigen::Vector2d& viewer) {
     const auto middle = floor.begin() + static_cast<std::ptrdiff_t>(i);
     double first = 0.0;
     double second = 0.0;
-    fitFaces(Points(floor.begin(), middle), viewer, &first);
-    fitFaces(Points(middle, floor.end()), viewer, &second);
+    fitFaces(Points(floor.begin(), middle), viewer, &first, row);
+    fitFaces(Points(middle, floor.end()), viewer, &second, row);
     const double both =
         first * static_cast<double>(i) + second * static_cast<double>(floor.size() - i);
     if (both >= least) continue;
@@ -118,9 +126,10 @@ void part(Points swept, const Eigen::Vector2d& viewer, double least_depth,
   if (at == 0) {
     Points floor = on_floor(swept);
     at = findSlotChange(floor, slots);
-    if (at == 0) at = findSizeLimit(floor, viewer);
+    const std::optional<double> row = findRowHeading(floor, slots);
+    if (at == 0) at = findSizeLimit(floor, viewer, row);
     if (at == 0) {
-      out.push_back({std::move(swept), std::move(floor)});
+      out.push_back({std::move(swept), std::move(floor), row});
       return;
     }
   }

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "parkade/types/semantic_features.hpp"
@@ -22,12 +23,13 @@ double reachOf(const std::vector<Eigen::Vector2d>& points, std::size_t begin, st
 struct CarEdge {
   std::vector<Eigen::Vector2d> swept;  ///< as the picture shows it
   std::vector<Eigen::Vector2d> floor;  ///< where its points stand
+  std::optional<double> heading;       ///< rad, of its row's slots, where it stands in one
 };
 
 /// Parts the edge that cars' smears have at the floor, its points swept over by the viewer, into
 /// one per car: where something else is in between, at a notch (least_depth, m) as the gap between
 /// two cars makes it, where it passes from slot to slot (agent_slots.hpp), and where it is larger
-/// than cars are, at the place after which two cars fit best. on_floor: where such points stand.
+/// than cars are, or wider than those in a row of slots, at the place after which two cars fit best. on_floor: where such points stand.
 std::vector<CarEdge> partCars(
     std::vector<Eigen::Vector2d> swept, const Eigen::Vector2d& viewer, double least_depth,
     const std::vector<SlotObservation>& slots,

@@ -72,7 +72,7 @@ AgentDetection vehicleOf(const CarEdge& car, const ContactEdge& edge, const BevL
   AgentDetection agent;
   agent.semantic_class = SemanticClass::kVehicle;
   agent.viewer = view.foot;
-  agent.box = fitFaces(points, view.foot);
+  agent.box = fitFaces(points, view.foot, nullptr, car.heading);
   const Eigen::Vector2d& middle = labels.geometry.center;
   agent.contact =
       *std::min_element(points.begin(), points.end(), [&](const auto& a, const auto& b) {
@@ -110,6 +110,26 @@ void findVehicles(const ContactFinder& finder, const BevLabels& labels,
   }
 }
 
+// Share of places somewhat behind an edge that go on showing a person, as what stands upright does;
+// those beyond the picture do not count.
+double smearedShare(const Points& edge, const BevLabels& labels, const Eigen::Vector2d& foot) {
+  int seen = 0;
+  int smeared = 0;
+  for (const Eigen::Vector2d& p : edge) {
+    const Eigen::Vector2d ray = (p - foot).normalized();
+    for (const double behind : {0.4, 0.6, 0.8}) {
+      const Eigen::Vector2d pixel = labels.geometry.toPixel(p + behind * ray);
+      const auto u = static_cast<int>(std::lround(pixel.x()));
+      const auto v = static_cast<int>(std::lround(pixel.y()));
+      if (u < 0 || v < 0 || u >= labels.labels.cols || v >= labels.labels.rows) continue;
+      const auto label = static_cast<SemanticClass>(labels.labels.at<std::uint8_t>(v, u));
+      ++seen;
+      smeared += label == SemanticClass::kPedestrian ? 1 : 0;
+    }
+  }
+  return seen > 0 ? static_cast<double>(smeared) / seen : 1.0;
+}
+
 void findPeople(const ContactFinder& finder, const BevLabels& labels, const BevViews& views,
                 double attitude_sigma, const AgentOptions& options,
                 std::vector<AgentDetection>& out) {
@@ -126,6 +146,10 @@ void findPeople(const ContactFinder& finder, const BevLabels& labels, const BevV
     for (const Eigen::Vector2d& p : edge.points) {
       if ((p - view.foot).norm() < 1.1 * nearest + kStride) feet.push_back(p);
     }
+    // Specks that a network sees by mistake are neither sure nor long.
+    constexpr double kSure = 0.6;
+    constexpr double kSmeared = 0.1;
+    if (edge.confidence < kSure && smearedShare(feet, labels, view.foot) < kSmeared) continue;
     Eigen::Vector2d low = feet.front();
     Eigen::Vector2d high = feet.front();
     for (const Eigen::Vector2d& p : feet) {
@@ -150,23 +174,28 @@ void findPeople(const ContactFinder& finder, const BevLabels& labels, const BevV
   }
 }
 
-// A person's limbs over the floor may look like more people behind.
+bool isBehind(const Eigen::Vector2d& what, const Eigen::Vector2d& other,
+              const Eigen::Vector2d& viewer) {
+  constexpr double kBeside = 0.35;  // m
+  const Eigen::Vector2d a = what - viewer;
+  const Eigen::Vector2d b = other - viewer;
+  return b.norm() < a.norm() && b.dot(a) > 0.0 && std::abs(cross(b, a)) < kBeside * a.norm();
+}
+
+// A person's limbs over the floor may look like more people behind, and so does the smear away from
+// the camera that sees the person best, where the picture goes over to another camera's.
 void dropEchoes(const BevViews& views, const BevGeometry& geometry,
                 std::vector<AgentDetection>& agents) {
   std::vector<AgentDetection> kept;
   for (std::size_t i = 0; i < agents.size(); ++i) {
     const AgentDetection& a = agents[i];
-    const Eigen::Vector2d foot = views.viewAt(geometry, a.contact).foot;
-    const double range = (a.contact - foot).norm();
     bool echo = false;
     for (std::size_t j = 0; j < agents.size() && !echo; ++j) {
       const AgentDetection& b = agents[j];
       if (j == i || a.semantic_class != b.semantic_class) continue;
       if (a.semantic_class != SemanticClass::kPedestrian) continue;
-      const Eigen::Vector2d d = b.contact - foot;
-      if (d.norm() >= range) continue;
-      const double beside = std::abs(cross(d, a.contact - foot)) / range;
-      echo = beside < 0.35 && d.dot(a.contact - foot) > 0.0;
+      echo = isBehind(a.contact, b.contact, views.viewAt(geometry, a.contact).foot) ||
+             isBehind(a.contact, b.contact, views.viewAt(geometry, b.contact).foot);
     }
     if (!echo) kept.push_back(a);
   }

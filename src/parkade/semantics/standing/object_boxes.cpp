@@ -40,16 +40,17 @@ Eigen::Vector2d GroundBox::nearestTo(const Eigen::Vector2d& p) const {
 }
 
 GroundBox fitFaces(const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& viewer,
-                   double* off) {
+                   double* off, std::optional<double> heading) {
   PARKADE_CHECK(!points.empty(), "no points");
   constexpr int kHeadings = 45;
   constexpr double kFar = 0.2;  // m: points inside, as of a wheel house, say nothing of a face
   GroundBox best;
   double least = std::numeric_limits<double>::max();
   const std::size_t stride = std::max<std::size_t>(1, points.size() / 80);
-  for (int k = 0; k < kHeadings; ++k) {
+  for (int k = 0; k < (heading ? 1 : kHeadings); ++k) {
     GroundBox box;
-    box.heading = k * M_PI_2 / kHeadings;
+    box.heading =
+        heading ? *heading - M_PI_2 * std::floor(*heading / M_PI_2) : k * M_PI_2 / kHeadings;
     const Eigen::Matrix2d R = box.axes().transpose();
     Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::max());
     Eigen::Vector2d high = -low;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 namespace parkade {
@@ -23,9 +24,10 @@ struct GroundBox {
 /// points reach: X. Zhang et al., "Efficient L-shape fitting for vehicle detection using laser
 /// scanners", IV 2017, with the mean distance to the nearest face as the criterion. Headings are in
 /// [0, pi / 2). Points of its far side are not known; the caller completes it. off, if given: that
-/// mean distance, m, no point counting more than 0.2.
+/// mean distance, m, no point counting more than 0.2. heading, rad: that of one of its axes, where
+/// it is known.
 GroundBox fitFaces(const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& viewer,
-                   double* off = nullptr);
+                   double* off = nullptr, std::optional<double> heading = std::nullopt);
 
 /// Grows a box to at least these sizes along its axes, away from the viewer.
 GroundBox grownTo(const GroundBox& box, const Eigen::Vector2d& size, const Eigen::Vector2d& viewer);

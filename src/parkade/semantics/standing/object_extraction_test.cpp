@@ -106,6 +106,35 @@ TEST(ObjectExtraction, PeopleStandBetweenTheirFeet) {
   EXPECT_LT((found.agents[0].contact - feet).norm(), 0.2);
 }
 
+// Where the pictures of two cameras are blended, a person is smeared away from either.
+TEST(ObjectExtraction, APersonSeenByTwoCamerasIsOne) {
+  Scene scene;
+  const Eigen::Vector2d feet(5.0, -2.5);
+  scene.stand(SemanticClass::kPedestrian, box(feet.x(), feet.y(), 0.0, 0.3, 0.4), 0.0, 1.7);
+  const BevViews::View other{{1.4, 1.5}, 1.0};
+  scene.views.views.push_back(other);
+  const Eigen::Vector2d pixel = scene.labels.geometry.toPixel(feet);
+  scene.views.view_of(
+      cv::Rect(static_cast<int>(pixel.x()) - 15, static_cast<int>(pixel.y()) - 15, 30, 30)) = 1;
+  const Eigen::Vector2d ray = (feet - other.foot).normalized();
+  for (double behind = 2.0; behind < 3.2; behind += 0.1) {
+    const Eigen::Vector2d p = feet + behind * ray;
+    scene.cover(p.array() - 0.15, p.array() + 0.15, SemanticClass::kPedestrian);
+  }
+  const FoundObjects found = scene.extract();
+  ASSERT_EQ(found.agents.size(), 1U);
+  EXPECT_LT((found.agents[0].contact - feet).norm(), 0.3);
+}
+
+TEST(ObjectExtraction, SpecksAreNoPeopleUnlessTheyAreSure) {
+  for (const int sure : {130, 230}) {
+    Scene scene;
+    scene.cover({4.0, -3.0}, {4.3, -2.7}, SemanticClass::kPedestrian);
+    scene.labels.confidence.setTo(sure);
+    EXPECT_EQ(scene.extract().agents.size(), sure == 230 ? 1U : 0U);
+  }
+}
+
 TEST(ObjectExtraction, CarsSideBySideAreTwo) {
   Scene scene(0.9);
   const GroundBox left = box(1.6, 6.0, M_PI_2, 4.0, 1.8);
@@ -141,6 +170,29 @@ TEST(ObjectExtraction, CarsInSlotsAreTwoWhereNoGapIsSeen) {
     const GroundBox& car = agent.contact.x() > -2.8 ? near : far;
     EXPECT_LT((agent.contact - car.nearestTo(agent.contact)).norm(), 0.4);
   }
+}
+
+// Their own slots are not told, but one of their row is.
+TEST(ObjectExtraction, CarsInARowOfSlotsAreTwo) {
+  Scene scene(0.9);
+  const GroundBox near = box(-1.7, 4.6, M_PI_2, 4.0, 1.9);
+  const GroundBox far = box(-3.9, 4.6, M_PI_2, 4.0, 1.9);
+  for (const GroundBox& car : {near, far}) scene.stand(SemanticClass::kVehicle, car, 0.2, 1.5);
+  SlotObservation slot;
+  slot.corners = {Eigen::Vector2d(-0.6, 2.4), Eigen::Vector2d(1.6, 2.4), Eigen::Vector2d(1.6, 7.0),
+                  Eigen::Vector2d(-0.6, 7.0)};
+  scene.slots.push_back(slot);
+  const FoundObjects found = scene.extract();
+  ASSERT_EQ(found.agents.size(), 2U);
+  for (const AgentDetection& agent : found.agents) {
+    EXPECT_NEAR(std::abs(std::remainder(agent.box.heading, M_PI_2)), 0.0, 1e-9);
+  }
+  // One that passes before the row, along it, is no two.
+  Scene aisle(0.9);
+  for (Eigen::Vector2d& corner : slot.corners) corner.y() += 3.0;
+  aisle.slots.push_back(slot);
+  aisle.stand(SemanticClass::kVehicle, box(0.4, 3.0, 0.0, 4.5, 1.8), 0.2, 1.5);
+  EXPECT_EQ(aisle.extract().agents.size(), 1U);
 }
 
 TEST(ObjectExtraction, OneCarFromItsSideIsOne) {
