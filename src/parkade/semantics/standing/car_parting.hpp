@@ -29,7 +29,8 @@ struct CarEdge {
 /// Parts the edge that cars' smears have at the floor, its points swept over by the viewer, into
 /// one per car: where something else is in between, at a notch (least_depth, m) as the gap between
 /// two cars makes it, where it passes from slot to slot (agent_slots.hpp), and where it is larger
-/// than cars are, or wider than those in a row of slots, at the place after which two cars fit best. on_floor: where such points stand.
+/// than cars are, or wider than those in a row of slots, at the place after which two cars fit
+/// best. on_floor: where such points stand.
 std::vector<CarEdge> partCars(
     std::vector<Eigen::Vector2d> swept, const Eigen::Vector2d& viewer, double least_depth,
     const std::vector<SlotObservation>& slots,
