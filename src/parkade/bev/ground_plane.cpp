@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+
+#include "parkade/types/level_frame.hpp"
 
 namespace parkade {
 namespace {
@@ -29,11 +32,21 @@ double robustWeight(double whitened) {
   return 1.0 / (1.0 + whitened * whitened / (kScale * kScale));
 }
 
+// Nose down lifts the floor ahead, leaning right lifts it on the right.
+GroundAttitude attitudeOver(const Eigen::Vector3d& plane) {
+  GroundAttitude attitude;
+  attitude.pitch = std::atan(plane.x());
+  attitude.roll = std::atan(-plane.y() * std::cos(attitude.pitch));
+  attitude.height = -plane.z() / std::sqrt(1.0 + plane.head<2>().squaredNorm());
+  return attitude;
+}
+
 }  // namespace
 
 void GroundPlaneEstimator::reset() {
   points_.clear();
   has_plane_ = false;
+  elevation_.reset();
 }
 
 void GroundPlaneEstimator::remember(const PoseEstimate& pose,
@@ -50,6 +63,49 @@ void GroundPlaneEstimator::remember(const PoseEstimate& pose,
     const bool old = toSeconds(pose.t_ns - it->second.last_seen_ns) > options_.keep_s;
     const bool away = (it->second.p_odom - pose.T_odom_vehicle.translation()).norm() > far;
     it = old || away ? points_.erase(it) : std::next(it);
+  }
+}
+
+// The plane that fits the elevation around the car, and what is left of it.
+void GroundPlaneEstimator::addRelief(const SE3& T_odom_vehicle, const Eigen::Vector3d& plane,
+                                     GroundPlaneEstimate& estimate) {
+  std::vector<std::pair<std::uint64_t, FloorSample>> near;
+  for (const auto& [id, point] : points_) {
+    const Eigen::Vector2d beside = (point.p_odom - T_odom_vehicle.translation()).head<2>();
+    if (beside.norm() > options_.max_distance_m) continue;
+    near.push_back({id, {point.p_odom, std::hypot(point.sigma, options_.point_sigma_m)}});
+  }
+  std::sort(near.begin(), near.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<FloorSample> samples;
+  for (const auto& [id, sample] : near) samples.push_back(sample);
+  constexpr double kWheels = 3.0;  // m, the lever of the tilt
+  const double tilt = options_.tilt_prior_deg * std::numbers::pi / 180.0;
+  elevation_.update(T_odom_vehicle, plane, samples,
+                    std::hypot(options_.height_prior_m, kWheels * tilt));
+
+  constexpr double kReach = 6.0;  // m
+  constexpr double kStep = 2.0;
+  Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  for (double x = -kReach; x <= kReach; x += kStep) {
+    for (double y = -kReach; y <= kReach; y += kStep) {
+      const Eigen::Vector3d row(x, y, 1.0);
+      H += row * row.transpose();
+      b += row * elevation_.inVehicle(T_odom_vehicle, {x, y});
+    }
+  }
+  estimate.attitude = attitudeOver(H.ldlt().solve(b));
+  const SE3 T_odom_level = T_odom_vehicle * levelFrom(estimate.attitude).inverse();
+  constexpr int kHalf = 5;
+  estimate.relief.step_m = kStep;
+  estimate.relief.first.setConstant(-kHalf * kStep);
+  estimate.relief.heights.resize(2 * kHalf + 1, 2 * kHalf + 1);
+  for (int i = -kHalf; i <= kHalf; ++i) {
+    for (int j = -kHalf; j <= kHalf; ++j) {
+      estimate.relief.heights(i + kHalf, j + kHalf) =
+          elevation_.inVehicle(T_odom_level, {i * kStep, j * kStep});
+    }
   }
 }
 
@@ -111,16 +167,13 @@ GroundPlaneEstimate GroundPlaneEstimator::update(const PoseEstimate& pose,
   }
 
   const Eigen::Matrix3d covariance = H.inverse();
-  const double scale = 1.0 / std::sqrt(1.0 + plane.head<2>().squaredNorm());
   GroundPlaneEstimate estimate;
-  // Nose down lifts the floor ahead, leaning right lifts it on the right.
-  estimate.attitude.pitch = std::atan(plane.x());
-  estimate.attitude.roll = std::atan(-plane.y() * std::cos(estimate.attitude.pitch));
-  estimate.attitude.height = -plane.z() * scale;
+  estimate.attitude = attitudeOver(plane);
   estimate.sigma_pitch = std::sqrt(covariance(0, 0));
   estimate.sigma_roll = std::sqrt(covariance(1, 1));
   estimate.sigma_height = std::sqrt(covariance(2, 2));
   estimate.points = used;
+  if (options_.elevation.curvature_sigma > 0.0) addRelief(pose.T_odom_vehicle, plane, estimate);
 
   const Eigen::Vector3d normal =
       pose.T_odom_vehicle.rotation() * Eigen::Vector3d(-plane.x(), -plane.y(), 1.0);

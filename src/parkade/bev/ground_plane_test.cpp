@@ -62,6 +62,7 @@ TEST(GroundPlane, FindsAttitudeAndHeightExactlyWithoutNoise) {
   GroundPlaneOptions options;
   options.tilt_prior_deg = 10.0;
   options.height_prior_m = 1.0;
+  options.elevation.curvature_sigma = 0.0;
   GroundPlaneEstimator estimator(options);
   Random random(1);
   const std::vector<Landmark> landmarks = floorAround(c, 200, 0.0, random, 0);
@@ -71,6 +72,14 @@ TEST(GroundPlane, FindsAttitudeAndHeightExactlyWithoutNoise) {
   EXPECT_NEAR(estimate.attitude.pitch, 0.012, 2e-5);
   EXPECT_NEAR(estimate.attitude.roll, -0.008, 2e-5);
   EXPECT_NEAR(estimate.attitude.height, 0.015, 5e-5);
+  // The floor's elevation leans a little towards a level one where nothing is seen.
+  options.elevation = {};
+  GroundPlaneEstimator with_relief(options);
+  for (int i = 0; i < 30; ++i)
+    estimate = with_relief.update(poseOf(c, i * 100 * kNsPerMs), landmarks);
+  EXPECT_NEAR(estimate.attitude.pitch, 0.012, 1e-3);
+  EXPECT_NEAR(estimate.attitude.roll, -0.008, 1e-3);
+  EXPECT_NEAR(estimate.attitude.height, 0.015, 1e-3);
 }
 
 TEST(GroundPlane, HoldsAmongThingsThatStandOnTheFloor) {
@@ -99,13 +108,33 @@ TEST(GroundPlane, HoldsAmongThingsThatStandOnTheFloor) {
   EXPECT_LT(worst, 0.004);
 }
 
+TEST(GroundPlane, ReliefIsWhatNoPlaneFits) {
+  // A ridge under the car: the floor falls by 2 % to either side of x = 0.
+  const auto floor = [](double x) { return -0.02 * std::abs(x); };
+  Random random(5);
+  std::vector<Landmark> landmarks = floorAround({}, 300, 0.01, random, 0);
+  for (Landmark& landmark : landmarks) landmark.p_odom.z() += floor(landmark.p_odom.x());
+  GroundPlaneEstimator estimator({});
+  GroundPlaneEstimate e;
+  for (int i = 0; i < 20; ++i) e = estimator.update(poseOf({}, i * 100 * kNsPerMs), landmarks);
+  EXPECT_NEAR(e.attitude.pitch, 0.0, 0.002);
+  for (const double x : {-5.0, -2.0, 0.0, 3.0, 5.0}) {
+    const double found = e.relief.at({x, 1.0}) - e.attitude.height;
+    EXPECT_NEAR(found, floor(x), 0.015) << x;
+  }
+  GroundPlaneOptions plane_only;
+  plane_only.elevation.curvature_sigma = 0.0;
+  GroundPlaneEstimator plane(plane_only);
+  EXPECT_TRUE(plane.update(poseOf({}, 0), landmarks).relief.isFlat());
+}
+
 TEST(GroundPlane, SaysThatItKnowsLittleWithoutLandmarks) {
   GroundPlaneEstimator estimator({});
   const GroundPlaneEstimate e = estimator.update(poseOf({}, 0), {});
   EXPECT_EQ(e.points, 0);
   EXPECT_NEAR(e.sigma_pitch, 0.7 * M_PI / 180.0, 1e-6);
   EXPECT_NEAR(e.sigma_height, 0.02, 1e-9);
-  EXPECT_EQ(e.attitude.pitch, 0.0);
+  EXPECT_NEAR(e.attitude.pitch, 0.0, 1e-9);
 }
 
 }  // namespace

@@ -134,7 +134,8 @@ void GroundTable::hide(const cv::Mat& mask) {
   }
 }
 
-void GroundTable::mapFor(const GroundAttitude& attitude, cv::Mat& map_x, cv::Mat& map_y) const {
+void GroundTable::mapFor(const GroundAttitude& attitude, const cv::Mat& relief, cv::Mat& map_x,
+                         cv::Mat& map_y) const {
   const float change[3] = {static_cast<float>(attitude.pitch), static_cast<float>(attitude.roll),
                            static_cast<float>(attitude.height)};
   cv::Mat* maps[2] = {&map_x, &map_y};
@@ -149,6 +150,10 @@ void GroundTable::mapFor(const GroundAttitude& attitude, cv::Mat& map_x, cv::Mat
       for (int u = 0; u < roi_.width; ++u) {
         out[u] = base[u] + d0[u] * change[0] + d1[u] * change[1] + d2[u] * change[2];
       }
+      if (relief.empty()) continue;
+      // Floor that lies higher is as a body that stands lower.
+      const float* rise = relief.ptr<float>(v + roi_.y) + roi_.x;
+      for (int u = 0; u < roi_.width; ++u) out[u] -= d2[u] * rise[u];
     }
   }
 }

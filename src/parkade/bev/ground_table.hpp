@@ -33,8 +33,10 @@ class GroundTable {
   void hide(const cv::Mat& mask);
 
   /// Image points for an attitude, as cv::remap takes them: CV_32FC1 each, of roi()'s size; far
-  /// outside the image where not covered.
-  void mapFor(const GroundAttitude& attitude, cv::Mat& map_x, cv::Mat& map_y) const;
+  /// outside the image where not covered. relief: m, CV_32FC1, how far the floor at each of the
+  /// picture's pixels lies above the attitude's plane; empty: not at all.
+  void mapFor(const GroundAttitude& attitude, const cv::Mat& relief, cv::Mat& map_x,
+              cv::Mat& map_y) const;
 
  private:
   cv::Rect roi_;

@@ -10,6 +10,7 @@
 #include "parkade/camera/rig.hpp"
 #include "parkade/core/options.hpp"
 #include "parkade/types/bev_image.hpp"
+#include "parkade/types/ground_relief.hpp"
 #include "parkade/types/samples.hpp"
 
 namespace parkade {
@@ -55,8 +56,9 @@ class BevStitcher {
   void moveCamera(int camera, const SE3& T_vehicle_cam);
 
   /// Images must have the sizes of the rig's cameras and be all grey or all BGR (checked); empty
-  /// ones are left out.
-  [[nodiscard]] BevImage stitch(const FrameSet& frames, const GroundAttitude& attitude = {});
+  /// ones are left out. relief: of the floor over the attitude's plane.
+  [[nodiscard]] BevImage stitch(const FrameSet& frames, const GroundAttitude& attitude = {},
+                                const GroundRelief& relief = {});
 
   [[nodiscard]] const BevGeometry& geometry() const { return geometry_; }
   [[nodiscard]] const GroundTable& table(int camera) const { return tables_[camera]; }
@@ -71,6 +73,7 @@ class BevStitcher {
   };
   GroundTable& tableOf(int camera);
   void findOverlaps();
+  void drawRelief(const GroundRelief& relief);
   void updateGains(const FrameSet& frames);
 
   BevOptions options_;
@@ -83,6 +86,7 @@ class BevStitcher {
   Eigen::VectorXd log_gains_;
   bool has_gains_ = false;
   std::vector<cv::Mat> warped_;  ///< each camera's part, in its table's region
+  cv::Mat relief_;               ///< m, of each pixel; empty: flat
   cv::Mat map_x_, map_y_, sum_, weight_sum_;
 };
 

@@ -38,8 +38,9 @@ Rig testRig() {
   return rig;
 }
 
-// What the cameras see of the textured ground when the body stands at an attitude.
-FrameSet renderGround(const Rig& rig, const GroundAttitude& attitude) {
+// What the cameras see of the textured ground when the body stands at an attitude over its plane.
+FrameSet renderGround(const Rig& rig, const GroundAttitude& attitude,
+                      const GroundRelief& relief = {}) {
   const SE3 T_ground_vehicle(SO3::fromYawPitchRoll(0.0, attitude.pitch, attitude.roll),
                              Eigen::Vector3d(0.0, 0.0, attitude.height));
   FrameSet frames;
@@ -52,8 +53,11 @@ FrameSet renderGround(const Rig& rig, const GroundAttitude& attitude) {
         if (!camera.camera.unproject(Eigen::Vector2d(u, v), ray)) continue;
         ray = T_ground_cam.rotation() * ray;
         if (ray.z() > -0.01) continue;
-        const Eigen::Vector3d p =
-            T_ground_cam.translation() - T_ground_cam.translation().z() / ray.z() * ray;
+        const Eigen::Vector3d& eye = T_ground_cam.translation();
+        Eigen::Vector3d p = eye - eye.z() / ray.z() * ray;
+        for (int k = 0; k < 8 && !relief.isFlat(); ++k) {
+          p = eye + (relief.at(p.head<2>()) - eye.z()) / ray.z() * ray;
+        }
         image.at<std::uint8_t>(v, u) =
             static_cast<std::uint8_t>(std::lround(texture(p.x(), p.y())));
       }
@@ -112,6 +116,27 @@ TEST(BevStitcher, CorrectsPitchRollAndHeight) {
   const double corrected = rmsError(stitcher.stitch(frames, attitude), 6.0);
   EXPECT_GT(uncorrected, 4.0);
   EXPECT_LT(corrected, 1.0);
+}
+
+TEST(BevStitcher, FollowsTheFloorsRelief) {
+  const Rig rig = testRig();
+  GroundRelief ridge;  // under the car; the floor falls by 2 % ahead and behind, by 1 % to the left
+  ridge.first.setConstant(-10.0);
+  ridge.step_m = 2.0;
+  ridge.heights.resize(11, 11);
+  for (int i = 0; i < 11; ++i) {
+    for (int j = 0; j < 11; ++j) {
+      ridge.heights(i, j) = -0.02 * std::abs(2.0 * i - 10.0) - 0.01 * std::max(0.0, 2.0 * j - 10.0);
+    }
+  }
+  EXPECT_NEAR(ridge.at({3.0, 1.0}), -0.07, 1e-12);
+  EXPECT_NEAR(ridge.at({50.0, 0.0}), -0.2, 1e-12);  // as at the edge
+  const FrameSet frames = renderGround(rig, {}, ridge);
+  BevStitcher stitcher(rig, {});
+  const double as_plane = rmsError(stitcher.stitch(frames), 6.0);
+  const double with_relief = rmsError(stitcher.stitch(frames, {}, ridge), 6.0);
+  EXPECT_GT(as_plane, 8.0);
+  EXPECT_LT(with_relief, 1.5);
 }
 
 TEST(BevStitcher, CamerasMovedToWhereTheySitGiveThePictureOfTheTrueRig) {

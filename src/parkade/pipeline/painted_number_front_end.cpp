@@ -23,6 +23,7 @@ struct Seen {
   PaintedNumber number;
   std::size_t camera = 0;
   double height_px = 0.0;
+  SE3 T_floor_cam;  ///< of that camera; z = 0 is the floor under the number
 };
 
 // Readings of one piece of worn paint repeat their errors: doubtful ones must not add up.
@@ -52,20 +53,21 @@ struct PaintedNumberFrontEnd::Impl {
         continue;
       }
       const RigCamera& eye = rig.cameras[c];
-      const double height =
-          seenHeight(number, eye.camera, masks[c], T_level_vehicle * eye.T_vehicle_cam);
-      if (height >= options.numbers.min_height_px) all.push_back({number, c, height});
+      const SE3 T_floor_level(SO3(), {0.0, 0.0, -frame.relief.at(number.center)});
+      const SE3 T_floor_cam = T_floor_level * T_level_vehicle * eye.T_vehicle_cam;
+      const double height = seenHeight(number, eye.camera, masks[c], T_floor_cam);
+      if (height >= options.numbers.min_height_px) {
+        all.push_back({number, c, height, T_floor_cam});
+      }
     }
     std::stable_sort(all.begin(), all.end(),
                      [](const Seen& a, const Seen& b) { return a.height_px > b.height_px; });
     return all;
   }
 
-  [[nodiscard]] cv::Mat straighten(const Seen& seen, const FrameSet& frames,
-                                   const SE3& T_level_vehicle) const {
-    const RigCamera& eye = rig.cameras[seen.camera];
-    return straightenNumber(seen.number, frames.images[seen.camera], eye.camera,
-                            T_level_vehicle * eye.T_vehicle_cam);
+  [[nodiscard]] cv::Mat straighten(const Seen& seen, const FrameSet& frames) const {
+    return straightenNumber(seen.number, frames.images[seen.camera],
+                            rig.cameras[seen.camera].camera, seen.T_floor_cam);
   }
 
   // What a patch may say, of those texts whose figures fill the number's width.
@@ -163,8 +165,7 @@ Status PaintedNumberFrontEnd::Impl::readSlots(const FrameSet& frames, const BevV
       bestSeen(findPaintedNumbers(frame, options.numbers), frames, views, frame, T_level_vehicle);
   all.resize(std::min(all.size(), static_cast<std::size_t>(options.max_reads)));
   for (const Seen& seen : all) {
-    Result<std::vector<TextReading>> readings =
-        read(seen.number, straighten(seen, frames, T_level_vehicle));
+    Result<std::vector<TextReading>> readings = read(seen.number, straighten(seen, frames));
     if (!readings) return readings.error();
     if (certaintyOf(*readings) < kLikely) continue;
     frame.objects[seen.number.object].text = readings->front().text;
@@ -199,7 +200,7 @@ Result<std::vector<TextReading>> PaintedNumberFrontEnd::Impl::readTurned(
     if (!limit) break;
     const std::vector<Seen> seen = bestSeen({*limit}, frames, views, frame, T_level_vehicle);
     if (seen.empty()) break;
-    auto readings = reader.read(straighten(seen.front(), frames, T_level_vehicle), options.letters);
+    auto readings = reader.read(straighten(seen.front(), frames), options.letters);
     if (!readings) return readings;
     std::erase_if(*readings, [&](const TextReading& reading) {
       return std::find(limit_values.begin(), limit_values.end(), reading.text) ==

@@ -108,7 +108,8 @@ bool SemanticFrontEnd::addOdometry(const PoseEstimate& odometry,
     }
   }
   const SE3 T_level_odom = levelFrom(m.newest->floor.attitude) * odometry.T_odom_vehicle.inverse();
-  m.newest->raised = raisedPoints(landmarks, T_level_odom, m.options.raised_points);
+  m.newest->raised =
+      raisedPoints(landmarks, T_level_odom, m.newest->floor.relief, m.options.raised_points);
   return true;
 }
 
@@ -154,7 +155,7 @@ Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames) {
     m.views.pop_front();
   }
   Clock::time_point begin = Clock::now();
-  m.bev = m.stitcher.stitch(frames, view.floor.attitude);
+  m.bev = m.stitcher.stitch(frames, view.floor.attitude, view.floor.relief);
   const BevImage& bev = m.bev;
   m.stitch_clock.add(since(begin));
   begin = Clock::now();
@@ -166,6 +167,7 @@ Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames) {
   frame.labels = std::move(labels).value();
   frame.labels.t_ns = frames.t_ns;
   frame.attitude = view.floor.attitude;
+  frame.relief = std::move(view.floor.relief);
   frame.rig_turn = commonTurn(m.told, m.cameras);
   frame.attitude_sigma = std::max(view.floor.sigma_pitch, view.floor.sigma_roll);
   frame.line_points = linePointsFromLabels(frame.labels, frame.attitude_sigma, m.options.lines);

@@ -11,6 +11,7 @@
 
 #include "parkade/core/time.hpp"
 #include "parkade/types/bev_image.hpp"
+#include "parkade/types/ground_relief.hpp"
 #include "parkade/types/semantic_class.hpp"
 #include "parkade/types/text_reading.hpp"
 
@@ -120,6 +121,7 @@ struct SemanticFrame {
   static constexpr std::uint8_t kSmear = 255;
   static constexpr std::uint8_t kBehindEdge = 128;
   GroundAttitude attitude;      ///< that the picture was levelled with
+  GroundRelief relief;          ///< and the floor over its plane
   double attitude_sigma = 0.0;  ///< rad, of its pitch and roll
   /// rad: how far the cameras, all together, had been turned about the car's z from where the
   /// calibration says, when the picture was stitched.

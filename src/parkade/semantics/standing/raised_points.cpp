@@ -5,11 +5,13 @@
 namespace parkade {
 
 std::vector<RaisedPoint> raisedPoints(const std::vector<Landmark>& landmarks,
-                                      const SE3& T_level_odom, const RaisedPointOptions& options) {
+                                      const SE3& T_level_odom, const GroundRelief& relief,
+                                      const RaisedPointOptions& options) {
   std::vector<RaisedPoint> raised;
   for (const Landmark& landmark : landmarks) {
     if (landmark.num_observations < options.min_observations) continue;
-    const Eigen::Vector3d p = T_level_odom * landmark.p_odom;
+    Eigen::Vector3d p = T_level_odom * landmark.p_odom;
+    p.z() -= relief.at(p.head<2>());
     if (p.z() < options.min_height_m || p.head<2>().norm() > options.range_m) continue;
     if (landmark.covariance.trace() > options.max_sigma_m * options.max_sigma_m) continue;
     raised.push_back({landmark.id, p});

@@ -6,6 +6,7 @@
 
 #include "parkade/core/options.hpp"
 #include "parkade/geometry/se3.hpp"
+#include "parkade/types/ground_relief.hpp"
 #include "parkade/types/landmark.hpp"
 #include "parkade/types/semantic_features.hpp"
 
@@ -28,8 +29,9 @@ struct RaisedPointOptions {
 };
 
 /// Key points that surely lie above the floor and near the car: they show something upright
-/// (SmearFinder, mapping/layers/wall_points.hpp).
+/// (SmearFinder, mapping/layers/wall_points.hpp). Heights are over the floor with its relief.
 std::vector<RaisedPoint> raisedPoints(const std::vector<Landmark>& landmarks,
-                                      const SE3& T_level_odom, const RaisedPointOptions& options);
+                                      const SE3& T_level_odom, const GroundRelief& relief,
+                                      const RaisedPointOptions& options);
 
 }  // namespace parkade

@@ -25,7 +25,7 @@ TEST(RaisedPoints, AreSureAndNearTheCar) {
   landmarks[4].covariance *= 1e4;
   // The levelled frame's origin lies on the floor, odom's half a metre above.
   const SE3 T_level_odom(SO3(), Vector3d(0.0, 0.0, 0.5));
-  const std::vector<RaisedPoint> raised = raisedPoints(landmarks, T_level_odom, options);
+  const std::vector<RaisedPoint> raised = raisedPoints(landmarks, T_level_odom, {}, options);
   ASSERT_EQ(raised.size(), 2U);
   EXPECT_NEAR(raised[0].p_level.z(), 1.4, 1e-12);
   EXPECT_NEAR(raised[1].p_level.z(), 0.6, 1e-12);
