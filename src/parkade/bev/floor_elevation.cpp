@@ -4,55 +4,69 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <utility>
 
 namespace parkade {
 namespace {
 
-using Triplets = std::vector<Eigen::Triplet<double>>;
+// Cauchy's weight of an error in sigmas.
+double trustIn(double error, double scale) {
+  return 1.0 / (1.0 + error * error / (scale * scale));
+}
 
-// Information of "the sum of factor times height over these nodes is 0", lower half.
-void addTerm(std::initializer_list<std::pair<int, double>> nodes, double information,
-             Triplets& out) {
-  for (const auto& [i, a] : nodes) {
-    for (const auto& [j, b] : nodes) {
-      if (i >= j) out.emplace_back(i, j, information * a * b);
+// Information of "the sum of factor times height over these nodes is as said", lower half.
+template <typename Add>
+void addTerm(const int (&nodes)[4], const double (&factors)[4], double information, Add&& add) {
+  for (int a = 0; a < 4; ++a) {
+    for (int b = 0; b < 4; ++b) {
+      if (nodes[a] >= nodes[b]) add(nodes[a], nodes[b], information * factors[a] * factors[b]);
     }
   }
 }
 
 }  // namespace
 
-FloorElevation::FloorElevation(const FloorElevationOptions& options) : options_(options) {
+void FloorElevation::addBends() {
   constexpr double kLeastCurvature = 1e-5;  // 1/m
-  const double bend = std::max(kLeastCurvature, options.curvature_sigma) * kStep * kStep;
-  const double rise = options.slope_sigma * kStep;
-  const auto index = [](int i, int j) { return i * kSide + j; };
-  Triplets terms;
+  const double f = 1.0 / (std::max(kLeastCurvature, options_.curvature_sigma) * kStep * kStep);
+  const double mixed = std::sqrt(2.0) * f;
   for (int i = 0; i < kSide; ++i) {
     for (int j = 0; j < kSide; ++j) {
-      const int n = index(i, j);
-      for (const int next : {i + 1 < kSide ? index(i + 1, j) : -1, j + 1 < kSide ? n + 1 : -1}) {
-        if (next >= 0) addTerm({{n, 1.0}, {next, -1.0}}, 1.0 / (rise * rise), terms);
+      const int n = i * kSide + j;
+      for (const auto& [step, inside] :
+           {std::pair(kSide, i + 2 < kSide), std::pair(1, j + 2 < kSide)}) {
+        if (!inside) continue;
+        bends_.push_back({{n, n + step, n + 2 * step, n + 2 * step}, {f, -2.0 * f, f, 0.0}});
       }
-      if (i + 2 < kSide) {
-        addTerm({{n, 1.0}, {index(i + 1, j), -2.0}, {index(i + 2, j), 1.0}}, 1.0 / (bend * bend),
-                terms);
-      }
-      if (j + 2 < kSide) {
-        addTerm({{n, 1.0}, {n + 1, -2.0}, {n + 2, 1.0}}, 1.0 / (bend * bend), terms);
-      }
-      if (i + 1 < kSide && j + 1 < kSide) {
-        const int across = index(i + 1, j);
-        addTerm({{n, 1.0}, {across, -1.0}, {n + 1, -1.0}, {across + 1, 1.0}}, 2.0 / (bend * bend),
-                terms);
-      }
+      if (i + 1 == kSide || j + 1 == kSide) continue;
+      bends_.push_back({{n, n + kSide, n + 1, n + kSide + 1}, {mixed, -mixed, -mixed, mixed}});
     }
   }
-  prior_.resize(kSide * kSide, kSide * kSide);
-  prior_.setFromTriplets(terms.begin(), terms.end());
-  solver_.analyzePattern(prior_);
+}
+
+void FloorElevation::addSlopes(std::vector<Eigen::Triplet<double>>& terms) const {
+  const double information = std::pow(options_.slope_sigma * kStep, -2.0);
+  for (int n = 0; n < kSide * kSide; ++n) {
+    for (const int next : {n + kSide, n % kSide + 1 < kSide ? n + 1 : kSide * kSide}) {
+      if (next >= kSide * kSide) continue;
+      terms.emplace_back(n, n, information);
+      terms.emplace_back(next, next, information);
+      terms.emplace_back(next, n, -information);
+    }
+  }
+}
+
+FloorElevation::FloorElevation(const FloorElevationOptions& options) : options_(options) {
+  addBends();
+  std::vector<Eigen::Triplet<double>> terms;
+  addSlopes(terms);
+  for (const Bend& bend : bends_) {  // their places in the matrix
+    addTerm(bend.nodes, bend.factors, 0.0,
+            [&](int row, int column, double value) { terms.emplace_back(row, column, value); });
+  }
+  slopes_.resize(kSide * kSide, kSide * kSide);
+  slopes_.setFromTriplets(terms.begin(), terms.end());
+  solver_.analyzePattern(slopes_);
 }
 
 FloorElevation::Weights FloorElevation::weightsAt(const Eigen::Vector2d& p_odom) const {
@@ -78,14 +92,14 @@ double FloorElevation::at(const Eigen::Vector2d& p_odom) const {
   return height;
 }
 
-double FloorElevation::inVehicle(const SE3& T_odom_vehicle, const Eigen::Vector2d& p) const {
-  Eigen::Vector3d p_vehicle(p.x(), p.y(), 0.0);
-  const Eigen::Vector3d up = T_odom_vehicle.rotation() * Eigen::Vector3d::UnitZ();
-  for (int k = 0; k < 2; ++k) {  // the floor is nearly level: the second step changes little
-    const Eigen::Vector3d p_odom = T_odom_vehicle * p_vehicle;
-    p_vehicle.z() += (at(p_odom.head<2>()) - p_odom.z()) / up.z();
+double FloorElevation::heightIn(const SE3& T_odom_frame, const Eigen::Vector2d& p) const {
+  Eigen::Vector3d p_frame(p.x(), p.y(), 0.0);
+  const Eigen::Vector3d up = T_odom_frame.rotation() * Eigen::Vector3d::UnitZ();
+  for (int k = 0; k < 2; ++k) {  // the second step changes little
+    const Eigen::Vector3d p_odom = T_odom_frame * p_frame;
+    p_frame.z() += (at(p_odom.head<2>()) - p_odom.z()) / up.z();
   }
-  return p_vehicle.z();
+  return p_frame.z();
 }
 
 void FloorElevation::move(const SE3& T_odom_vehicle, const Eigen::Vector3d& plane) {
@@ -113,27 +127,31 @@ void FloorElevation::move(const SE3& T_odom_vehicle, const Eigen::Vector3d& plan
 
 // firm: so many of the first samples are believed whatever the others say.
 void FloorElevation::solve(const std::vector<FloorSample>& samples, std::size_t firm) {
-  constexpr int kIterations = 4;  // the lattice of the frame before is near
-  constexpr double kScale = 1.5;  // of Cauchy's weight, in sigmas
+  constexpr int kIterations = 4;     // the lattice of the frame before is near
+  constexpr double kSample = 1.5;    // scale of Cauchy's weight
+  constexpr double kStanding = 2.0;  // what lies above the floor may be no floor, below hardly
+  constexpr double kBend = 1.0;
   std::vector<Weights> weights;
   for (const FloorSample& s : samples) weights.push_back(weightsAt(s.p_odom.head<2>()));
-  Eigen::SparseMatrix<double> H = prior_;
+  Eigen::SparseMatrix<double> H = slopes_;
+  const auto add = [&H](int row, int column, double value) { H.coeffRef(row, column) += value; };
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    std::copy(prior_.valuePtr(), prior_.valuePtr() + prior_.nonZeros(), H.valuePtr());
+    std::copy(slopes_.valuePtr(), slopes_.valuePtr() + slopes_.nonZeros(), H.valuePtr());
+    for (const Bend& bend : bends_) {
+      double bent = 0.0;
+      for (int n = 0; n < 4; ++n) bent += bend.factors[n] * heights_[bend.nodes[n]];
+      addTerm(bend.nodes, bend.factors, trustIn(bent, kBend), add);
+    }
     Eigen::VectorXd b = Eigen::VectorXd::Zero(kSide * kSide);
     for (std::size_t k = 0; k < samples.size(); ++k) {
       const Weights& w = weights[k];
       double off = samples[k].p_odom.z();
       for (int n = 0; n < 4; ++n) off -= w.share[n] * heights_[w.node[n]];
-      const double whitened = off / samples[k].sigma;
-      const double trust = k < firm ? 1.0 : 1.0 / (1.0 + whitened * whitened / (kScale * kScale));
-      const double information = trust / (samples[k].sigma * samples[k].sigma);
-      for (int n = 0; n < 4; ++n) {
-        b[w.node[n]] += information * w.share[n] * samples[k].p_odom.z();
-        for (int m = 0; m <= n; ++m) {
-          H.coeffRef(w.node[n], w.node[m]) += information * w.share[n] * w.share[m];
-        }
-      }
+      const double error = (off > 0.0 ? kStanding : 1.0) * off / samples[k].sigma;
+      const double information =
+          (k < firm ? 1.0 : trustIn(error, kSample)) / (samples[k].sigma * samples[k].sigma);
+      for (int n = 0; n < 4; ++n) b[w.node[n]] += information * w.share[n] * samples[k].p_odom.z();
+      addTerm(w.node, w.share, information, add);
     }
     solver_.factorize(H);
     heights_ = solver_.solve(b);
@@ -141,9 +159,10 @@ void FloorElevation::solve(const std::vector<FloorSample>& samples, std::size_t 
 }
 
 void FloorElevation::update(const SE3& T_odom_vehicle, const Eigen::Vector3d& plane,
-                            const std::vector<FloorSample>& samples, double rest_sigma) {
+                            const std::vector<FloorSample>& samples, const RestSigma& rest) {
   move(T_odom_vehicle, plane);
-  constexpr double kWheels = 3.0;  // m ahead, behind and beside
+  constexpr double kWheels = 3.0;  // m ahead, behind and beside: as if these touched the floor
+  const double rest_sigma = std::hypot(rest.height, kWheels * rest.tilt);
   std::vector<FloorSample> used;
   for (const double x : {-kWheels, kWheels}) {
     for (const double y : {-kWheels, kWheels}) {

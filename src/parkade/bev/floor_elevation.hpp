@@ -12,17 +12,24 @@
 namespace parkade {
 
 struct FloorElevationOptions {
-  double curvature_sigma = 0.005;
-  double slope_sigma = 0.05;
+  double curvature_sigma = 0.003;
+  double slope_sigma = 0.1;
   double max_off_m = 0.12;
 
   void visit(OptionVisitor& v) {
     v.field("curvature_sigma", curvature_sigma, "1/m",
-            "Curvature of floors, 1 sigma: 0 turns ramps and falls into planes.", 0.0, 1.0);
+            "Curvature of most of the floor, 1 sigma: 0 turns ramps and falls into planes.", 0.0,
+            1.0);
     v.field("slope_sigma", slope_sigma, "ratio", "Slope of floors, 1 sigma.", 1e-4, 1.0);
     v.field("max_off_m", max_off_m, "m",
             "Landmarks further above or below the floor expected are no floor.", 0.005, 2.0);
   }
+};
+
+/// How well the body is known to stand level on the floor where no sample tells it, 1 sigma.
+struct RestSigma {
+  double tilt = 0.012;   ///< rad
+  double height = 0.02;  ///< m
 };
 
 /// A point that may be of the floor.
@@ -40,16 +47,15 @@ class FloorElevation {
   explicit FloorElevation(const FloorElevationOptions& options);
 
   /// Moves the lattice along with the car and takes the samples. plane: (a, b, c) of
-  /// z = a x + b y + c in the vehicle frame, the floor where nothing was known before. rest_sigma:
-  /// m, how well the floor is known to lie under the wheels where no sample tells it.
+  /// z = a x + b y + c in the vehicle frame, the floor where nothing was known before.
   void update(const SE3& T_odom_vehicle, const Eigen::Vector3d& plane,
-              const std::vector<FloorSample>& samples, double rest_sigma);
+              const std::vector<FloorSample>& samples, const RestSigma& rest);
 
   [[nodiscard]] bool isEmpty() const { return heights_.size() == 0; }
   /// Height in odom, m; beyond the lattice as at its edge.
   [[nodiscard]] double at(const Eigen::Vector2d& p_odom) const;
-  /// Height of the floor above or below a place of the vehicle frame, in that frame.
-  [[nodiscard]] double inVehicle(const SE3& T_odom_vehicle, const Eigen::Vector2d& p) const;
+  /// Height of the floor over (below) the place p of a nearly level frame, in that frame.
+  [[nodiscard]] double heightIn(const SE3& T_odom_frame, const Eigen::Vector2d& p) const;
 
   void reset() { heights_.resize(0); }
 
@@ -62,14 +68,22 @@ class FloorElevation {
     int node[4];
     double share[4];
   };
+  // A difference of second order, in sigmas of curvature.
+  struct Bend {
+    int nodes[4];  // the last one twice where there are three
+    double factors[4];
+  };
   [[nodiscard]] Weights weightsAt(const Eigen::Vector2d& p_odom) const;
   void move(const SE3& T_odom_vehicle, const Eigen::Vector3d& plane);
+  void addSlopes(std::vector<Eigen::Triplet<double>>& terms) const;
+  void addBends();
   void solve(const std::vector<FloorSample>& samples, std::size_t firm);
 
   FloorElevationOptions options_;
   Eigen::Vector2i first_ = Eigen::Vector2i::Zero();  // node (0, 0), in steps
   Eigen::VectorXd heights_;                          // m, in odom; x major
-  Eigen::SparseMatrix<double> prior_;                // information; the lower half
+  std::vector<Bend> bends_;
+  Eigen::SparseMatrix<double> slopes_;  // information of a level floor; the lower half
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> solver_;
 };
 

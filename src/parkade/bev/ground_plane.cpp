@@ -20,6 +20,7 @@ constexpr int kMinObservations = 3;
 // The plane of the frame before holds for the next one but for slope changes and the body's motion.
 constexpr double kLastTiltSigma = 0.01;     // rad
 constexpr double kLastHeightSigma = 0.015;  // m
+constexpr double kReliefStep = 2.0;         // m
 
 struct FloorPoint {
   Eigen::Vector3d p_vehicle;
@@ -39,6 +40,36 @@ GroundAttitude attitudeOver(const Eigen::Vector3d& plane) {
   attitude.roll = std::atan(-plane.y() * std::cos(attitude.pitch));
   attitude.height = -plane.z() / std::sqrt(1.0 + plane.head<2>().squaredNorm());
   return attitude;
+}
+
+// The plane that fits best within 6 m, in the vehicle frame.
+Eigen::Vector3d planeOf(const FloorElevation& elevation, const SE3& T_odom_vehicle) {
+  constexpr double kReach = 6.0;  // m
+  Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  for (double x = -kReach; x <= kReach; x += kReliefStep) {
+    for (double y = -kReach; y <= kReach; y += kReliefStep) {
+      const Eigen::Vector3d row(x, y, 1.0);
+      H += row * row.transpose();
+      b += row * elevation.heightIn(T_odom_vehicle, {x, y});
+    }
+  }
+  return H.ldlt().solve(b);
+}
+
+GroundRelief reliefOf(const FloorElevation& elevation, const SE3& T_odom_level) {
+  constexpr int kHalf = 5;  // nodes to either side: a picture reaches 9 m ahead
+  GroundRelief relief;
+  relief.step_m = kReliefStep;
+  relief.first.setConstant(-kHalf * kReliefStep);
+  relief.heights.resize(2 * kHalf + 1, 2 * kHalf + 1);
+  for (int i = -kHalf; i <= kHalf; ++i) {
+    for (int j = -kHalf; j <= kHalf; ++j) {
+      relief.heights(i + kHalf, j + kHalf) =
+          elevation.heightIn(T_odom_level, {i * kReliefStep, j * kReliefStep});
+    }
+  }
+  return relief;
 }
 
 }  // namespace
@@ -66,10 +97,10 @@ void GroundPlaneEstimator::remember(const PoseEstimate& pose,
   }
 }
 
-// The plane that fits the elevation around the car, and what is left of it.
+// The floor's elevation, and with it the plane that fits it best and what is left over that.
 void GroundPlaneEstimator::addRelief(const SE3& T_odom_vehicle, const Eigen::Vector3d& plane,
                                      GroundPlaneEstimate& estimate) {
-  std::vector<std::pair<std::uint64_t, FloorSample>> near;
+  std::vector<std::pair<std::uint64_t, FloorSample>> near;  // by id: sums come out the same
   for (const auto& [id, point] : points_) {
     const Eigen::Vector2d beside = (point.p_odom - T_odom_vehicle.translation()).head<2>();
     if (beside.norm() > options_.max_distance_m) continue;
@@ -79,34 +110,10 @@ void GroundPlaneEstimator::addRelief(const SE3& T_odom_vehicle, const Eigen::Vec
             [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<FloorSample> samples;
   for (const auto& [id, sample] : near) samples.push_back(sample);
-  constexpr double kWheels = 3.0;  // m, the lever of the tilt
-  const double tilt = options_.tilt_prior_deg * std::numbers::pi / 180.0;
   elevation_.update(T_odom_vehicle, plane, samples,
-                    std::hypot(options_.height_prior_m, kWheels * tilt));
-
-  constexpr double kReach = 6.0;  // m
-  constexpr double kStep = 2.0;
-  Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  for (double x = -kReach; x <= kReach; x += kStep) {
-    for (double y = -kReach; y <= kReach; y += kStep) {
-      const Eigen::Vector3d row(x, y, 1.0);
-      H += row * row.transpose();
-      b += row * elevation_.inVehicle(T_odom_vehicle, {x, y});
-    }
-  }
-  estimate.attitude = attitudeOver(H.ldlt().solve(b));
-  const SE3 T_odom_level = T_odom_vehicle * levelFrom(estimate.attitude).inverse();
-  constexpr int kHalf = 5;
-  estimate.relief.step_m = kStep;
-  estimate.relief.first.setConstant(-kHalf * kStep);
-  estimate.relief.heights.resize(2 * kHalf + 1, 2 * kHalf + 1);
-  for (int i = -kHalf; i <= kHalf; ++i) {
-    for (int j = -kHalf; j <= kHalf; ++j) {
-      estimate.relief.heights(i + kHalf, j + kHalf) =
-          elevation_.inVehicle(T_odom_level, {i * kStep, j * kStep});
-    }
-  }
+                    {options_.tilt_prior_deg * std::numbers::pi / 180.0, options_.height_prior_m});
+  estimate.attitude = attitudeOver(planeOf(elevation_, T_odom_vehicle));
+  estimate.relief = reliefOf(elevation_, T_odom_vehicle * levelFrom(estimate.attitude).inverse());
 }
 
 GroundPlaneEstimate GroundPlaneEstimator::update(const PoseEstimate& pose,

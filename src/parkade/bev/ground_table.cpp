@@ -60,6 +60,26 @@ Entry makeEntry(const RigCamera& rig_camera, const Eigen::Vector2d& ground, doub
 
 }  // namespace
 
+cv::Mat reliefPicture(const GroundRelief& relief, const BevGeometry& geometry) {
+  cv::Mat picture;
+  if (relief.isFlat()) return picture;
+  cv::Mat nodes(static_cast<int>(relief.heights.rows()), static_cast<int>(relief.heights.cols()),
+                CV_32FC1);
+  for (int i = 0; i < nodes.rows; ++i) {
+    for (int j = 0; j < nodes.cols; ++j) {
+      nodes.at<float>(i, j) = static_cast<float>(relief.heights(i, j));
+    }
+  }
+  // The picture's rows run against x, along which the nodes' rows lie; columns and y likewise.
+  const double scale = -geometry.metres_per_px / relief.step_m;
+  const Eigen::Vector2d corner =
+      (geometry.toGround(Eigen::Vector2d::Zero()) - relief.first) / relief.step_m;
+  const cv::Matx23d node_of_pixel(scale, 0.0, corner.y(), 0.0, scale, corner.x());
+  cv::warpAffine(nodes, picture, node_of_pixel, cv::Size(geometry.width_px, geometry.height_px),
+                 cv::INTER_LINEAR | cv::WARP_INVERSE_MAP, cv::BORDER_REPLICATE);
+  return picture;
+}
+
 GroundTable::GroundTable(const RigCamera& camera, const BevGeometry& geometry, double border_px,
                          double max_range) {
   PARKADE_CHECK(geometry.width_px > 0 && geometry.height_px > 0 && geometry.metres_per_px > 0.0,

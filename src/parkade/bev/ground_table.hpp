@@ -6,8 +6,13 @@
 
 #include "parkade/camera/rig.hpp"
 #include "parkade/types/bev_image.hpp"
+#include "parkade/types/ground_relief.hpp"
 
 namespace parkade {
+
+/// The relief at each pixel of a picture, m, CV_32FC1, as GroundTable::mapFor takes it; empty where
+/// the floor is flat.
+cv::Mat reliefPicture(const GroundRelief& relief, const BevGeometry& geometry);
 
 /// Inverse perspective mapping of one camera: for each bird's-eye pixel that it sees, the image
 /// point, and how that point moves with the body's attitude. docs/math/ipm.md, eqs. (1) to (4).
@@ -33,8 +38,7 @@ class GroundTable {
   void hide(const cv::Mat& mask);
 
   /// Image points for an attitude, as cv::remap takes them: CV_32FC1 each, of roi()'s size; far
-  /// outside the image where not covered. relief: m, CV_32FC1, how far the floor at each of the
-  /// picture's pixels lies above the attitude's plane; empty: not at all.
+  /// outside the image where not covered. relief: reliefPicture() of the whole picture.
   void mapFor(const GroundAttitude& attitude, const cv::Mat& relief, cv::Mat& map_x,
               cv::Mat& map_y) const;
 

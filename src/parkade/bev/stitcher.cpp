@@ -196,32 +196,11 @@ void BevStitcher::updateGains(const FrameSet& frames) {
   has_gains_ = true;
 }
 
-void BevStitcher::drawRelief(const GroundRelief& relief) {
-  if (relief.isFlat()) {
-    relief_.release();
-    return;
-  }
-  cv::Mat nodes(static_cast<int>(relief.heights.rows()), static_cast<int>(relief.heights.cols()),
-                CV_32FC1);
-  for (int i = 0; i < nodes.rows; ++i) {
-    for (int j = 0; j < nodes.cols; ++j) {
-      nodes.at<float>(i, j) = static_cast<float>(relief.heights(i, j));
-    }
-  }
-  // Nodes' rows run along x, as the picture's rows do against it; columns along y likewise.
-  const double scale = -geometry_.metres_per_px / relief.step_m;
-  const Eigen::Vector2d corner =
-      (geometry_.toGround(Eigen::Vector2d::Zero()) - relief.first) / relief.step_m;
-  const cv::Matx23d node_of_pixel(scale, 0.0, corner.y(), 0.0, scale, corner.x());
-  cv::warpAffine(nodes, relief_, node_of_pixel, cv::Size(geometry_.width_px, geometry_.height_px),
-                 cv::INTER_LINEAR | cv::WARP_INVERSE_MAP, cv::BORDER_REPLICATE);
-}
-
 BevImage BevStitcher::stitch(const FrameSet& frames, const GroundAttitude& attitude,
                              const GroundRelief& relief) {
   PARKADE_CHECK(frames.images.size() == tables_.size(), "{} images for a rig of {} cameras",
                 frames.images.size(), tables_.size());
-  drawRelief(relief);
+  const cv::Mat rise = reliefPicture(relief, geometry_);
   int channels = 0;
   for (std::size_t i = 0; i < tables_.size(); ++i) {
     const cv::Mat& image = frames.images[i];
@@ -235,7 +214,7 @@ BevImage BevStitcher::stitch(const FrameSet& frames, const GroundAttitude& attit
                   "camera {}: {} channels", rig_.cameras[i].name, image.channels());
     channels = image.channels();
     if (tables_[i].roi().empty()) continue;
-    tables_[i].mapFor(attitude, relief_, map_x_, map_y_);
+    tables_[i].mapFor(attitude, rise, map_x_, map_y_);
     cv::remap(image, warped_[i], map_x_, map_y_, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
   }
   BevImage result;

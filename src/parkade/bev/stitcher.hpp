@@ -73,7 +73,6 @@ class BevStitcher {
   };
   GroundTable& tableOf(int camera);
   void findOverlaps();
-  void drawRelief(const GroundRelief& relief);
   void updateGains(const FrameSet& frames);
 
   BevOptions options_;
@@ -86,7 +85,6 @@ class BevStitcher {
   Eigen::VectorXd log_gains_;
   bool has_gains_ = false;
   std::vector<cv::Mat> warped_;  ///< each camera's part, in its table's region
-  cv::Mat relief_;               ///< m, of each pixel; empty: flat
   cv::Mat map_x_, map_y_, sum_, weight_sum_;
 };
 

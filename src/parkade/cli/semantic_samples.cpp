@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Parkade authors
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/cli/semantic_samples.hpp"
+#include "parkade/types/level_frame.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,6 +9,7 @@
 
 #include "parkade/core/units.hpp"
 #include "parkade/sim/drive/frame_renderer.hpp"
+#include "parkade/types/level_frame.hpp"
 
 namespace parkade::cli {
 namespace {
@@ -123,10 +125,30 @@ GroundAttitude SemanticSampler::trueAttitude(const SE3& T_world_vehicle) const {
   return {-std::asin(up.x()), std::atan2(up.y(), up.z()), -plane[0] * up.z()};
 }
 
+GroundRelief SemanticSampler::trueRelief(const SE3& T_world_vehicle,
+                                         const GroundAttitude& attitude) const {
+  constexpr int kHalf = 5;
+  constexpr double kStep = 2.0;  // m
+  const sim::Garage& garage = simulation_->garage();
+  const SE3 T_world_level = T_world_vehicle * levelFrom(attitude).inverse();
+  GroundRelief relief;
+  relief.step_m = kStep;
+  relief.first.setConstant(-kHalf * kStep);
+  relief.heights.resize(2 * kHalf + 1, 2 * kHalf + 1);
+  for (int i = -kHalf; i <= kHalf; ++i) {
+    for (int j = -kHalf; j <= kHalf; ++j) {
+      const Eigen::Vector3d p = T_world_level * Eigen::Vector3d(i * kStep, j * kStep, 0.0);
+      relief.heights(i + kHalf, j + kHalf) = garage.floorHeight(p.head<2>()) - p.z();
+    }
+  }
+  return relief;
+}
+
 cv::Mat SemanticSampler::labelPicture(const SemanticSample& sample,
                                       const sim::Moment& moment) const {
   const std::size_t cameras = simulation_->trueRig().cameras.size();
   const cv::Size size = sample.bev.valid.size();
+  const cv::Mat relief = reliefPicture(sample.relief, sample.bev.geometry);
   cv::Mat best(size, CV_32FC1, cv::Scalar(0.0F));
   cv::Mat labels(size, CV_8UC1, cv::Scalar(0));
   cv::Mat map_x;
@@ -135,7 +157,7 @@ cv::Mat SemanticSampler::labelPicture(const SemanticSample& sample,
     const GroundTable& table = stitcher_->table(static_cast<int>(i));
     const cv::Rect roi = table.roi();
     if (roi.empty()) continue;
-    table.mapFor(sample.attitude, {}, map_x, map_y);
+    table.mapFor(sample.attitude, relief, map_x, map_y);
     const RigCamera& camera = simulation_->trueRig().cameras[i];
     cv::Mat directions(roi.size(), CV_32FC3, cv::Scalar::all(0.0));
     cv::Mat mine(roi.size(), CV_8UC1, cv::Scalar(0));
@@ -203,8 +225,12 @@ SemanticSample SemanticSampler::draw(int index) {
   sample.attitude.roll = sample.true_attitude.roll + random.normal(0.0, sigma);
   sample.attitude.height =
       sample.true_attitude.height + random.normal(0.0, 0.01 * options_.height_error_cm);
+  sample.relief = trueRelief(sample.T_world_vehicle, sample.true_attitude);
+  for (double& height : sample.relief.heights.reshaped()) {
+    height += random.normal(0.0, 0.01 * options_.relief_error_cm);
+  }
   if (!options_.stitched) return sample;
-  sample.bev = stitcher_->stitch(sample.frames, sample.attitude);
+  sample.bev = stitcher_->stitch(sample.frames, sample.attitude, sample.relief);
   sample.bev_labels = withoutSpecks(labelPicture(sample, *moment), sample.bev.valid);
   return sample;
 }

@@ -19,8 +19,9 @@ namespace parkade::cli {
 /// How samples for training and scores are drawn from a simulated drive.
 struct SampleOptions {
   int frames = 10;
-  double attitude_error_deg = 0.2;
-  double height_error_cm = 0.5;
+  double attitude_error_deg = 0.07;
+  double height_error_cm = 0.3;
+  double relief_error_cm = 0.5;
   double turn_deg = 0.0;
   double shift_m = 0.0;
   bool masks = true;
@@ -35,6 +36,9 @@ struct SampleOptions {
             10.0);
     v.field("height_error_cm", height_error_cm, "cm",
             "Standard deviation of the height that the stitcher is told.", 0.0, 100.0);
+    v.field("relief_error_cm", relief_error_cm, "cm",
+            "Standard deviation of the floor's heights, every 2 m, that the stitcher is told.", 0.0,
+            100.0);
     v.field("turn_deg", turn_deg, "deg",
             "Standard deviation of a turn away from the drive's heading.", 0.0, 180.0);
     v.field("shift_m", shift_m, "m", "Standard deviation of a step away from the drive.", 0.0,
@@ -52,6 +56,7 @@ struct SemanticSample {
   double t = 0.0;  ///< s since the drive began
   SE3 T_world_vehicle;
   GroundAttitude attitude;       ///< that the picture was stitched with
+  GroundRelief relief;           ///< and with it the floor over its plane
   GroundAttitude true_attitude;  ///< of the floor around the car
   BevImage bev;                  ///< stitched by the program, own car and unseen places black;
                                  ///< empty where none is wanted
@@ -86,6 +91,9 @@ class SemanticSampler {
   [[nodiscard]] cv::Mat drawBodyMask(int camera) const;
   [[nodiscard]] double timeOf(int index, Random& random) const;
   [[nodiscard]] GroundAttitude trueAttitude(const SE3& T_world_vehicle) const;
+  /// Of the floor over the plane of an attitude.
+  [[nodiscard]] GroundRelief trueRelief(const SE3& T_world_vehicle,
+                                        const GroundAttitude& attitude) const;
   [[nodiscard]] cv::Mat labelPicture(const SemanticSample& sample, const sim::Moment& moment) const;
 
   SampleOptions options_;
