@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Parkade authors
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/cli/semantic_samples.hpp"
-#include "parkade/types/level_frame.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
