@@ -57,6 +57,19 @@ Eigen::Vector3d planeOf(const FloorElevation& elevation, const SE3& T_odom_vehic
   return H.ldlt().solve(b);
 }
 
+// Errors of the elevation turn the lines on both sides of the car, where errors of a plane shear
+// them: a floor that is nearly a plane is taken for one.
+void fadeNearPlane(Eigen::MatrixXd& heights) {
+  constexpr double kPlane = 0.006;  // m, RMS within 6 m
+  constexpr double kRelief = 0.012;
+  constexpr Eigen::Index kRim = 2;  // nodes beyond
+  const auto inner =
+      heights.block(kRim, kRim, heights.rows() - 2 * kRim, heights.cols() - 2 * kRim);
+  const double rms = std::sqrt(inner.squaredNorm() / static_cast<double>(inner.size()));
+  const double share = std::clamp((rms - kPlane) / (kRelief - kPlane), 0.0, 1.0);
+  heights *= share * share * (3.0 - 2.0 * share);
+}
+
 GroundRelief reliefOf(const FloorElevation& elevation, const SE3& T_odom_level) {
   constexpr int kHalf = 5;  // nodes to either side: a picture reaches 9 m ahead
   GroundRelief relief;
@@ -69,6 +82,7 @@ GroundRelief reliefOf(const FloorElevation& elevation, const SE3& T_odom_level) 
           elevation.heightIn(T_odom_level, {i * kReliefStep, j * kReliefStep});
     }
   }
+  fadeNearPlane(relief.heights);
   return relief;
 }
 

@@ -128,6 +128,18 @@ TEST(GroundPlane, ReliefIsWhatNoPlaneFits) {
   EXPECT_TRUE(plane.update(poseOf({}, 0), landmarks).relief.isFlat());
 }
 
+TEST(GroundPlane, AFloorThatIsNearlyAPlaneIsTakenForOne) {
+  Case c{0.0, 0.0, 0.4, 0.015, 0.005, {0.004, -0.003, 0.01}};
+  Random random(6);
+  const std::vector<Landmark> landmarks = floorAround(c, 150, 0.012, random, 0);
+  GroundPlaneEstimator estimator({});
+  GroundPlaneEstimate e;
+  for (int i = 0; i < 10; ++i) e = estimator.update(poseOf(c, i * 100 * kNsPerMs), landmarks);
+  EXPECT_EQ(e.relief.heights.cwiseAbs().maxCoeff(), 0.0);
+  EXPECT_NEAR(e.attitude.pitch, c.attitude.pitch, 0.0015);
+  EXPECT_NEAR(e.attitude.roll, c.attitude.roll, 0.0015);
+}
+
 TEST(GroundPlane, SaysThatItKnowsLittleWithoutLandmarks) {
   GroundPlaneEstimator estimator({});
   const GroundPlaneEstimate e = estimator.update(poseOf({}, 0), {});
