@@ -72,16 +72,9 @@ void fadeNearPlane(Eigen::MatrixXd& heights) {
 
 GroundRelief reliefOf(const FloorElevation& elevation, const SE3& T_odom_level) {
   constexpr int kHalf = 5;  // nodes to either side: a picture reaches 9 m ahead
-  GroundRelief relief;
-  relief.step_m = kReliefStep;
-  relief.first.setConstant(-kHalf * kReliefStep);
-  relief.heights.resize(2 * kHalf + 1, 2 * kHalf + 1);
-  for (int i = -kHalf; i <= kHalf; ++i) {
-    for (int j = -kHalf; j <= kHalf; ++j) {
-      relief.heights(i + kHalf, j + kHalf) =
-          elevation.heightIn(T_odom_level, {i * kReliefStep, j * kReliefStep});
-    }
-  }
+  GroundRelief relief = GroundRelief::around(kHalf, kReliefStep, [&](const Eigen::Vector2d& p) {
+    return elevation.heightIn(T_odom_level, p);
+  });
   fadeNearPlane(relief.heights);
   return relief;
 }

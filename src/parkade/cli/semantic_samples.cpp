@@ -130,17 +130,10 @@ GroundRelief SemanticSampler::trueRelief(const SE3& T_world_vehicle,
   constexpr double kStep = 2.0;  // m
   const sim::Garage& garage = simulation_->garage();
   const SE3 T_world_level = T_world_vehicle * levelFrom(attitude).inverse();
-  GroundRelief relief;
-  relief.step_m = kStep;
-  relief.first.setConstant(-kHalf * kStep);
-  relief.heights.resize(2 * kHalf + 1, 2 * kHalf + 1);
-  for (int i = -kHalf; i <= kHalf; ++i) {
-    for (int j = -kHalf; j <= kHalf; ++j) {
-      const Eigen::Vector3d p = T_world_level * Eigen::Vector3d(i * kStep, j * kStep, 0.0);
-      relief.heights(i + kHalf, j + kHalf) = garage.floorHeight(p.head<2>()) - p.z();
-    }
-  }
-  return relief;
+  return GroundRelief::around(kHalf, kStep, [&](const Eigen::Vector2d& at) {
+    const Eigen::Vector3d p = T_world_level * Eigen::Vector3d(at.x(), at.y(), 0.0);
+    return garage.floorHeight(p.head<2>()) - p.z();
+  });
 }
 
 cv::Mat SemanticSampler::labelPicture(const SemanticSample& sample,
@@ -224,11 +217,11 @@ SemanticSample SemanticSampler::draw(int index) {
   sample.attitude.roll = sample.true_attitude.roll + random.normal(0.0, sigma);
   sample.attitude.height =
       sample.true_attitude.height + random.normal(0.0, 0.01 * options_.height_error_cm);
+  if (!options_.stitched) return sample;
   sample.relief = trueRelief(sample.T_world_vehicle, sample.true_attitude);
   for (double& height : sample.relief.heights.reshaped()) {
     height += random.normal(0.0, 0.01 * options_.relief_error_cm);
   }
-  if (!options_.stitched) return sample;
   sample.bev = stitcher_->stitch(sample.frames, sample.attitude, sample.relief);
   sample.bev_labels = withoutSpecks(labelPicture(sample, *moment), sample.bev.valid);
   return sample;

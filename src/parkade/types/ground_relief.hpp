@@ -16,6 +16,21 @@ struct GroundRelief {
   double step_m = 1.0;
   Eigen::MatrixXd heights;  ///< m, rows along x, columns along y; no nodes: a plane
 
+  /// half nodes to either side of the frame's origin; heightAt: of a place (x, y), m.
+  template <typename HeightAt>
+  static GroundRelief around(int half, double step_m, HeightAt&& heightAt) {
+    GroundRelief relief;
+    relief.step_m = step_m;
+    relief.first.setConstant(-half * step_m);
+    relief.heights.resize(2 * half + 1, 2 * half + 1);
+    for (int i = -half; i <= half; ++i) {
+      for (int j = -half; j <= half; ++j) {
+        relief.heights(i + half, j + half) = heightAt(Eigen::Vector2d(i * step_m, j * step_m));
+      }
+    }
+    return relief;
+  }
+
   [[nodiscard]] bool isFlat() const { return heights.size() == 0; }
 
   [[nodiscard]] double at(const Eigen::Vector2d& p) const {

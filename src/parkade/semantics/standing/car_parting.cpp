@@ -126,11 +126,13 @@ void part(Points swept, const Eigen::Vector2d& viewer, double least_depth,
   if (at == 0) {
     Points floor = on_floor(swept);
     at = findSlotChange(floor, slots);
-    const std::optional<double> row = findRowHeading(floor, slots);
-    if (at == 0) at = findSizeLimit(floor, viewer, row);
     if (at == 0) {
-      out.push_back({std::move(swept), std::move(floor), row});
-      return;
+      const std::optional<double> row = findRowHeading(floor, slots);
+      at = findSizeLimit(floor, viewer, row);
+      if (at == 0) {
+        out.push_back({std::move(swept), std::move(floor), row});
+        return;
+      }
     }
   }
   const auto middle = swept.begin() + static_cast<std::ptrdiff_t>(at);
