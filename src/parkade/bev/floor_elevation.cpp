@@ -6,13 +6,10 @@
 #include <cmath>
 #include <utility>
 
+#include "parkade/geometry/robust.hpp"
+
 namespace parkade {
 namespace {
-
-// Cauchy's weight of an error in sigmas.
-double trustIn(double error, double scale) {
-  return 1.0 / (1.0 + error * error / (scale * scale));
-}
 
 // Information of "the sum of factor times height over these nodes is as said", lower half.
 template <typename Add>
@@ -140,7 +137,7 @@ void FloorElevation::solve(const std::vector<FloorSample>& samples, std::size_t 
     for (const Bend& bend : bends_) {
       double bent = 0.0;
       for (int n = 0; n < 4; ++n) bent += bend.factors[n] * heights_[bend.nodes[n]];
-      addTerm(bend.nodes, bend.factors, trustIn(bent, kBend), add);
+      addTerm(bend.nodes, bend.factors, cauchy(bent * bent, kBend).weight, add);
     }
     Eigen::VectorXd b = Eigen::VectorXd::Zero(kSide * kSide);
     for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -148,8 +145,8 @@ void FloorElevation::solve(const std::vector<FloorSample>& samples, std::size_t 
       double off = samples[k].p_odom.z();
       for (int n = 0; n < 4; ++n) off -= w.share[n] * heights_[w.node[n]];
       const double error = (off > 0.0 ? kStanding : 1.0) * off / samples[k].sigma;
-      const double information =
-          (k < firm ? 1.0 : trustIn(error, kSample)) / (samples[k].sigma * samples[k].sigma);
+      const double information = (k < firm ? 1.0 : cauchy(error * error, kSample).weight) /
+                                 (samples[k].sigma * samples[k].sigma);
       for (int n = 0; n < 4; ++n) b[w.node[n]] += information * w.share[n] * samples[k].p_odom.z();
       addTerm(w.node, w.share, information, add);
     }

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <utility>
 
+#include "parkade/geometry/robust.hpp"
 #include "parkade/types/level_frame.hpp"
 
 namespace parkade {
@@ -21,17 +22,12 @@ constexpr int kMinObservations = 3;
 constexpr double kLastTiltSigma = 0.01;     // rad
 constexpr double kLastHeightSigma = 0.015;  // m
 constexpr double kReliefStep = 2.0;         // m
+constexpr double kCauchy = 1.5;             // sigmas: what stands on the floor must not lift it
 
 struct FloorPoint {
   Eigen::Vector3d p_vehicle;
   double sigma;
 };
-
-// Cauchy's weight: what stands on the floor must not lift it.
-double robustWeight(double whitened) {
-  constexpr double kScale = 1.5;
-  return 1.0 / (1.0 + whitened * whitened / (kScale * kScale));
-}
 
 // Nose down lifts the floor ahead, leaning right lifts it on the right.
 GroundAttitude attitudeOver(const Eigen::Vector3d& plane) {
@@ -172,7 +168,8 @@ GroundPlaneEstimate GroundPlaneEstimator::update(const PoseEstimate& pose,
     for (const auto& [id, point] : near) {
       const Eigen::Vector3d row(point.p_vehicle.x(), point.p_vehicle.y(), 1.0);
       const double whitened = (point.p_vehicle.z() - plane.dot(row)) / point.sigma;
-      const double weight = robustWeight(whitened) / (point.sigma * point.sigma);
+      const double weight =
+          cauchy(whitened * whitened, kCauchy).weight / (point.sigma * point.sigma);
       H += weight * row * row.transpose();
       b += weight * point.p_vehicle.z() * row;
       if (std::abs(whitened) < 2.5) ++used;
