@@ -183,6 +183,48 @@ void tellStrokesFromArrows(const cv::Mat& slot_line, double metres_per_px, cv::M
   }
 }
 
+void tellSlotsFromLanes(const cv::Mat& slot_line, double metres_per_px, cv::Mat& labels) {
+  constexpr auto kLane = static_cast<int>(SemanticClass::kLaneLine);
+  constexpr auto kSlot = static_cast<int>(SemanticClass::kSlotLine);
+  constexpr std::size_t kLeast = 8;   // px of lane line
+  constexpr int kTouch = 4;           // px of them beside a slot's line
+  constexpr double kDoubtful = 4.0;   // log-odds, on average, where they touch
+  constexpr double kDoubtfulT = 3.0;  // the same of what has a T's or an L's shape
+  constexpr double kBothWays = 0.35;  // m that such measure at least
+  constexpr double kWidest = 0.9;
+  if (slot_line.empty()) return;
+  const cv::Mat lane = labels == kLane;
+  if (cv::countNonZero(lane) == 0) return;
+  cv::Mat piece_of;
+  const int count = cv::connectedComponents(lane, piece_of, 8, CV_32S);
+  cv::Mat near;
+  cv::dilate(labels == kSlot, near, cv::Mat::ones(5, 5, CV_8UC1));
+  struct Piece {
+    std::vector<cv::Point> pixels;
+    int touching = 0;
+    double below = 0.0;  // how far slot line lies below lane line, summed
+  };
+  std::vector<Piece> pieces(static_cast<std::size_t>(count));
+  for (int v = 0; v < labels.rows; ++v) {
+    for (int u = 0; u < labels.cols; ++u) {
+      if (lane.at<std::uint8_t>(v, u) == 0) continue;
+      Piece& piece = pieces[static_cast<std::size_t>(piece_of.at<int>(v, u))];
+      piece.pixels.emplace_back(u, v);
+      if (near.at<std::uint8_t>(v, u) != 0) ++piece.touching;
+      piece.below += (255.0 - slot_line.at<std::uint8_t>(v, u)) / kSlotLinePerLogOdds;
+    }
+  }
+  for (const Piece& piece : pieces) {
+    if (piece.pixels.size() < kLeast) continue;
+    const double below = piece.below / static_cast<double>(piece.pixels.size());
+    const cv::Size2f box = cv::minAreaRect(piece.pixels).size;
+    const double narrow = std::min(box.width, box.height) * metres_per_px;
+    const bool t_shaped = narrow > kBothWays && narrow < kWidest && below < kDoubtfulT;
+    if (!t_shaped && (piece.touching < kTouch || below > kDoubtful)) continue;
+    for (const cv::Point& p : piece.pixels) labels.at<std::uint8_t>(p) = kSlot;
+  }
+}
+
 void uniteStrokes(cv::Mat& labels, double metres_per_px) {
   constexpr double kLargest = 0.1;  // m^2 of a piece that may be mistaken
   constexpr int kTimes = 2;

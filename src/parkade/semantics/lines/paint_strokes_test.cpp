@@ -85,5 +85,45 @@ TEST(PaintStrokes, WhatTheNetworkIsSureOfStaysAnArrow) {
   EXPECT_EQ(cv::countNonZero(labels != before), 0);
 }
 
+// A slot's corner whose side is labelled lane line, and a lane line by itself.
+cv::Mat cornerAndLane(double doubt, cv::Mat& slot_line) {
+  cv::Mat labels = floorOf(128);
+  paint(labels, {20, 20, 4, 40}, SemanticClass::kSlotLine);
+  paint(labels, {25, 20, 60, 4}, SemanticClass::kLaneLine);
+  paint(labels, {20, 90, 60, 4}, SemanticClass::kLaneLine);
+  slot_line = cv::Mat(labels.size(), CV_8UC1, cv::Scalar(255.0 - kSlotLinePerLogOdds * doubt));
+  return labels;
+}
+
+TEST(PaintStrokes, LaneLinesThatTouchASlotAreSlotLines) {
+  cv::Mat slot_line;
+  cv::Mat labels = cornerAndLane(3.0, slot_line);
+  tellSlotsFromLanes(slot_line, kScale, labels);
+  EXPECT_EQ(at(labels, 21, 80), SemanticClass::kSlotLine);
+  EXPECT_EQ(at(labels, 91, 40), SemanticClass::kLaneLine);  // touches none
+}
+
+TEST(PaintStrokes, LaneLinesMakeNoT) {
+  cv::Mat labels = floorOf(128);
+  paint(labels, {20, 20, 4, 16}, SemanticClass::kLaneLine);
+  paint(labels, {24, 26, 40, 4}, SemanticClass::kLaneLine);
+  paint(labels, {20, 90, 60, 4}, SemanticClass::kLaneLine);
+  const cv::Mat slot_line(labels.size(), CV_8UC1, cv::Scalar(255.0 - kSlotLinePerLogOdds * 2.0));
+  tellSlotsFromLanes(slot_line, kScale, labels);
+  EXPECT_EQ(at(labels, 27, 50), SemanticClass::kSlotLine);
+  EXPECT_EQ(at(labels, 22, 21), SemanticClass::kSlotLine);
+  EXPECT_EQ(at(labels, 91, 40), SemanticClass::kLaneLine);
+}
+
+TEST(PaintStrokes, LaneLinesOfWhichTheNetworkIsSureStay) {
+  cv::Mat slot_line;
+  const cv::Mat before = cornerAndLane(5.0, slot_line);
+  cv::Mat labels = before.clone();
+  tellSlotsFromLanes(slot_line, kScale, labels);
+  EXPECT_EQ(cv::countNonZero(labels != before), 0);
+  tellSlotsFromLanes(cv::Mat(), kScale, labels);  // a network without slot lines
+  EXPECT_EQ(cv::countNonZero(labels != before), 0);
+}
+
 }  // namespace
 }  // namespace parkade

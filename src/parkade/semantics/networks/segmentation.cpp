@@ -165,6 +165,7 @@ Result<BevLabels> SegmentationNetwork::segment(const BevImage& bev) {
   }
   tellStrokesFromArrows(slot_line, bev.geometry.metres_per_px, result.labels);
   uniteStrokes(result.labels, bev.geometry.metres_per_px);
+  tellSlotsFromLanes(slot_line, bev.geometry.metres_per_px, result.labels);
   const cv::Mat unseen = bev.valid == 0;
   result.labels.setTo(static_cast<int>(SemanticClass::kUnknown), unseen);
   result.confidence.setTo(0, unseen);
