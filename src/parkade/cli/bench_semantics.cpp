@@ -44,6 +44,7 @@ struct BenchArguments {
   std::string samples;
   std::string marking_points;
   bool pictures = false;
+  bool slot_trials = false;
   bool fast = false;
   bool texts = false;
   int threads = defaultThreads();
@@ -165,7 +166,8 @@ Result<std::vector<std::unique_ptr<SampleScore>>> makeScores(const BenchArgument
   Result<std::unique_ptr<SampleScore>> slots =
       makeSlotScore({arguments.segmentation.bev_network, true_labels, pictures,
                      arguments.options.attitude_error_deg * M_PI / 180.0,
-                     0.01 * arguments.options.height_error_cm});
+                     0.01 * arguments.options.height_error_cm,
+                     arguments.slot_trials ? joinPath(arguments.out, "slot_trials.csv") : ""});
   if (!slots) return slots.error();
   scores.push_back(std::move(slots).value());
   const std::string& views = arguments.segmentation.raw_network;
@@ -178,10 +180,10 @@ Result<std::vector<std::unique_ptr<SampleScore>>> makeScores(const BenchArgument
 }
 
 Status score(const BenchArguments& arguments, const std::vector<int>& seeds) {
-  Result<std::vector<std::unique_ptr<SampleScore>>> scores = makeScores(arguments);
-  if (!scores) return scores.error();
   Status status = makeFolders(arguments.out);
   if (!status) return status;
+  Result<std::vector<std::unique_ptr<SampleScore>>> scores = makeScores(arguments);
+  if (!scores) return scores.error();
   status = drawAll(
       arguments, seeds, arguments.out,
       [&](const SemanticSampler& sampler) {
@@ -269,6 +271,9 @@ void addBenchSemantics(CLI::App& bench, int& exit_code) {
       ->capture_default_str();
   command->add_flag("--pictures", arguments->pictures,
                     "Write every picture, with found and with true labels, to DIR/pictures");
+  command->add_flag("--slot-trials", arguments->slot_trials,
+                    "Write all pairs of marks that may be slots, with what speaks for and against "
+                    "them and whether they are, to DIR/slot_trials.csv (docs/networks.md)");
   command->add_option("--samples", arguments->samples, "Write training samples instead of scores")
       ->type_name("DIR");
   command->add_flag("--texts", arguments->texts,

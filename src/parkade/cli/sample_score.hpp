@@ -53,6 +53,7 @@ struct SlotScoreOptions {
   std::string pictures;            ///< folder for pictures with found and true slots; empty: none
   double attitude_sigma = 0.0035;  ///< rad, of the attitude that pictures are stitched with
   double height_sigma = 0.005;     ///< m, of the height
+  std::string trials;  ///< CSV file of all candidates with their clues and truth; empty: none
 };
 
 /// Precision, recall, entrance corners and availability of parking slots.

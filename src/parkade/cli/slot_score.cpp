@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -43,7 +44,11 @@ struct TrueSlot {
 class SlotScore : public SampleScore {
  public:
   SlotScore(SlotScoreOptions options, std::optional<SegmentationNetwork> network)
-      : options_(std::move(options)), network_(std::move(network)) {}
+      : options_(std::move(options)), network_(std::move(network)) {
+    if (options_.trials.empty()) return;
+    trials_.open(options_.trials);
+    trials_ << fmt::format("garage,right,doubt,{}\n", fmt::join(kSlotClueNames, ","));
+  }
 
   Status begin(const SemanticSampler& sampler) override {
     garage_ = sampler.simulation().spec().garage_seed;
@@ -63,10 +68,12 @@ class SlotScore : public SampleScore {
       labels = std::move(found).value();
     }
     const Lines lines = extractLines(sample.bev, labels, options_.attitude_sigma);
+    std::vector<SlotTrial> trials;
     const std::vector<SlotObservation> found =
         extractSlots(sample.bev, labels, lines.segments, views_,
-                     {options_.attitude_sigma, options_.height_sigma});
+                     {options_.attitude_sigma, options_.height_sigma}, {}, &trials);
     const std::vector<TrueSlot> slots = trueSlots(sampler, sample, truth);
+    if (Status status = writeTrials(trials, slots); !status) return status;
     compare(sample.bev.geometry, found, slots);
     if (options_.pictures.empty()) return {};
     return draw(sample, labels, lines, found, slots);
@@ -90,6 +97,7 @@ class SlotScore : public SampleScore {
                                                 const BevLabels& truth) const;
   void compare(const BevGeometry& geometry, const std::vector<SlotObservation>& found,
                const std::vector<TrueSlot>& slots);
+  Status writeTrials(const std::vector<SlotTrial>& trials, const std::vector<TrueSlot>& slots);
 
   void measure(const BevGeometry& geometry, const SlotObservation& found, const TrueSlot& truth);
   Status draw(const SemanticSample& sample, const BevLabels& labels, const Lines& lines,
@@ -125,6 +133,7 @@ class SlotScore : public SampleScore {
   std::array<Bin, kSlotBins.size() - 1> bins_;
   std::array<Count, 3> shapes_;
   std::array<Count, 4> markings_;
+  std::ofstream trials_;
 };
 
 std::vector<TrueSlot> SlotScore::trueSlots(const SemanticSampler& sampler,
@@ -226,6 +235,21 @@ void SlotScore::compare(const BevGeometry& geometry, const std::vector<SlotObser
     ++shape.found;
     ++marking.found;
   }
+}
+
+Status SlotScore::writeTrials(const std::vector<SlotTrial>& trials,
+                              const std::vector<TrueSlot>& slots) {
+  if (options_.trials.empty()) return {};
+  for (const SlotTrial& trial : trials) {
+    const bool right = std::any_of(slots.begin(), slots.end(), [&trial](const TrueSlot& slot) {
+      const auto& c = slot.slot.corners;
+      return std::max((trial.left - c[0]).norm(), (trial.right - c[1]).norm()) < kMatch;
+    });
+    trials_ << fmt::format("{},{:d},{:.3f},{:.4f}\n", garage_, right, trial.doubt,
+                           fmt::join(trial.clues, ","));
+  }
+  if (!trials_) return Error{fmt::format("{}: cannot be written", options_.trials)};
+  return {};
 }
 
 Status SlotScore::draw(const SemanticSample& sample, const BevLabels& labels, const Lines& lines,

@@ -16,7 +16,10 @@ using Eigen::Vector2d;
 
 constexpr double kSquare = 0.1392;      // cosine of 82 degrees: what is nearer to 90 is square
 constexpr double kMostSlant = 0.82;     // cosine of 35 degrees
-constexpr double kAlongFront = 0.9848;  // cosine of 10 degrees
+constexpr double kAlongFront = 0.1745;  // 10 degrees
+constexpr double kSideBySide = 0.1047;  // 6 degrees
+constexpr double kMostOff = 0.45;
+constexpr double kEndOff = 0.06;  // m, of a piece of line: short ones know their direction badly
 
 class MarkPairing {
  public:
@@ -39,13 +42,14 @@ class MarkPairing {
  private:
   [[nodiscard]] std::optional<SlotCandidate> pair(const SlotMark& left,
                                                   const SlotMark& right) const {
-    if (left.side == right.side || left.inward.dot(right.inward) < kParallelSides) {
-      return std::nullopt;
-    }
+    if (left.side == right.side || !runSideBySide(left, right)) return std::nullopt;
     SlotCandidate c;
     c.left = &left;
     c.right = &right;
-    c.inward = (left.visible * left.inward + right.visible * right.inward).normalized();
+    constexpr double kBar = 0.1;  // m: bars know their sides' direction, too
+    c.inward =
+        (std::max(left.visible, kBar) * left.inward + std::max(right.visible, kBar) * right.inward)
+            .normalized();
     const Vector2d front = right.p - left.p;
     const double length = front.norm();
     // Left of who drives in is left of inward.
@@ -56,7 +60,10 @@ class MarkPairing {
     if (cosine > kMostSlant) return std::nullopt;
     for (const SlotMark* mark : {&left, &right}) {
       if (mark->across.isZero()) continue;
-      if (std::abs(mark->across.dot(front)) < kAlongFront * length) return std::nullopt;
+      const double allowed = kAlongFront + kEndOff / std::max(mark->across_length, 0.1);
+      if (std::abs(cross(mark->across, front)) > std::sin(std::min(allowed, kMostOff)) * length) {
+        return std::nullopt;
+      }
     }
     c.shape = cosine > kSquare ? SlotShape::kSlanted : SlotShape::kPerpendicular;
     if (width < options_.min_width_m || width > options_.max_width_m) {
@@ -66,10 +73,20 @@ class MarkPairing {
       }
       c.shape = SlotShape::kParallel;
     }
-    if (hasMarkBetween(c) || !linesTurnIn(c)) return std::nullopt;
+    const double between = sideBetween(c);
+    c.mark_between = between >= 0.0;
+    if (c.mark_between && c.shape == SlotShape::kParallel) return std::nullopt;
+    if (between > 0.9 * std::min(left.visible, right.visible)) return std::nullopt;
+    c.turned_out = turnedOut(c);
     if (!measureDepth(c)) return std::nullopt;
     tellMarking(c);
     return c;
+  }
+
+  [[nodiscard]] static bool runSideBySide(const SlotMark& left, const SlotMark& right) {
+    const double shorter = std::max(std::min(left.visible, right.visible), 0.1);
+    return left.inward.dot(right.inward) >
+           std::cos(std::min(kSideBySide + kEndOff / shorter, kMostOff));
   }
 
   // Faint lines make slots as wide as the others of their row.
@@ -78,8 +95,9 @@ class MarkPairing {
     return !mark.isFaint() || std::abs(length - mark.row_width) < kSame;
   }
 
-  // Where a line meets a side at the entrance, it runs (or its bar points) towards the other side.
-  [[nodiscard]] bool linesTurnIn(const SlotCandidate& c) const {
+  // Where a line meets a side at the entrance, it runs (or its bar points) towards the other side:
+  // how often it does not.
+  [[nodiscard]] int turnedOut(const SlotCandidate& c) const {
     const Vector2d u = (c.right->p - c.left->p).normalized();
     constexpr double kLook = 0.5;  // m: bars are short, worn lines have holes
     constexpr double kPaint = 0.25;
@@ -90,20 +108,24 @@ class MarkPairing {
           probe_.along(mark.p + sign * from * u, mark.p + sign * kLook * u, 0.04);
       return seen.paint + seen.hidden > kPaint;
     };
-    return turnsIn(*c.left, 1.0) && turnsIn(*c.right, -1.0);
+    return (turnsIn(*c.left, 1.0) ? 0 : 1) + (turnsIn(*c.right, -1.0) ? 0 : 1);
   }
 
-  // Another side between the two: these are not neighbours.
-  [[nodiscard]] bool hasMarkBetween(const SlotCandidate& c) const {
+  // How much is seen (m) of another side between the two, at most; less than 0: there is none. It
+  // would make them no neighbours.
+  [[nodiscard]] double sideBetween(const SlotCandidate& c) const {
     const Vector2d front = c.right->p - c.left->p;
     const double length = front.norm();
     constexpr double kOff = 0.4;
-    return std::any_of(marks_.begin(), marks_.end(), [&](const SlotMark& mark) {
-      if (mark.inward.dot(c.inward) < kParallelSides) return false;
+    double seen = -1.0;
+    for (const SlotMark& mark : marks_) {
+      if (mark.inward.dot(c.inward) < kParallelSides) continue;
       const double s = (mark.p - c.left->p).dot(front) / length;
-      return s > kOff && s < length - kOff &&
-             std::abs(cross(front, mark.p - c.left->p)) < kOff * length;
-    });
+      if (s < kOff || s > length - kOff) continue;
+      if (std::abs(cross(front, mark.p - c.left->p)) > kOff * length) continue;
+      seen = std::max(seen, mark.visible);
+    }
+    return seen;
   }
 
   // From rear corners, or from where side lines end. False where they contradict a slot.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "parkade/semantics/label_probe.hpp"
+#include "parkade/semantics/slots/slot_clues.hpp"
 #include "parkade/semantics/slots/slot_extraction.hpp"
 #include "parkade/semantics/slots/slot_marks.hpp"
 #include "parkade/types/semantic_features.hpp"
@@ -24,7 +25,11 @@ struct SlotCandidate {
   SlotShape shape = SlotShape::kPerpendicular;
   SlotMarking marking = SlotMarking::kOpen;
   double depth = 0.0;  ///< m along inward; 0: not seen
-  double score = 0.0;  ///< log-odds
+  int turned_out = 0;  ///< sides whose meeting line runs only away from the other side
+  bool mark_between = false;
+  SlotClues clues = {};  ///< slot_clues.hpp
+  double doubt = 0.0;    ///< what other candidates say against it
+  double score = 0.0;    ///< log-odds
   std::array<Eigen::Vector2d, 4> corners = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(),
                                             Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
 

@@ -57,7 +57,8 @@ SlotObservation observe(const SlotCandidate& c, const LabelProbe& probe, const B
 std::vector<SlotObservation> extractSlots(const BevImage& bev, const BevLabels& labels,
                                           const std::vector<LineSegment>& segments,
                                           const BevViews& views, const FloorSigma& sigma,
-                                          const SlotOptions& options) {
+                                          const SlotOptions& options,
+                                          std::vector<SlotTrial>* trials) {
   PARKADE_CHECK(bev.image.size() == labels.labels.size(),
                 "a picture of {} x {} pixels, labels of {} x {}", bev.image.cols, bev.image.rows,
                 labels.labels.cols, labels.labels.rows);
@@ -78,6 +79,11 @@ std::vector<SlotObservation> extractSlots(const BevImage& bev, const BevLabels& 
       if (slot->left->isFaint() || slot->right->isFaint()) likely.push_back(slot);
     }
     likely = withoutOverlaps(std::move(likely));
+  }
+  if (trials != nullptr) {
+    for (const SlotCandidate& c : in_rows.empty() ? candidates : in_rows) {
+      trials->push_back({c.left->p, c.right->p, c.clues, c.doubt});
+    }
   }
   std::vector<SlotObservation> slots;
   for (const SlotCandidate* slot : likely) slots.push_back(observe(*slot, probe, views, sigma));

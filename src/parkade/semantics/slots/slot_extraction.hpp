@@ -6,6 +6,7 @@
 
 #include "parkade/core/options.hpp"
 #include "parkade/semantics/bev_views.hpp"
+#include "parkade/semantics/slots/slot_clues.hpp"
 #include "parkade/types/bev_image.hpp"
 #include "parkade/types/semantic_features.hpp"
 
@@ -55,6 +56,14 @@ struct FloorSigma {
   double height = 0.0;    ///< m
 };
 
+/// A candidate and what was held for and against it: what weights are fitted to.
+struct SlotTrial {
+  Eigen::Vector2d left = Eigen::Vector2d::Zero();
+  Eigen::Vector2d right = Eigen::Vector2d::Zero();
+  SlotClues clues = {};
+  double doubt = 0.0;
+};
+
 /// Finds parking slots: two marks (slot_marks.hpp) whose side lines run side by side, as far apart
 /// as the standards make slots (slot_candidates.hpp), with nothing painted in between, room to
 /// drive in front and no better explanation beside them (slot_ranking.hpp). Their rows are followed
@@ -62,10 +71,11 @@ struct FloorSigma {
 /// is told. Corners lie where the lines' middles meet; their covariance holds the
 /// picture's noise and the errors of the levelling, which move both corners together. Whether a
 /// slot is free comes from the labels inside (slot_occupancy.hpp). labels must be those of bev
-/// (checked); segments from extractLines.
+/// (checked); segments from extractLines. trials, if given, gets all candidates.
 std::vector<SlotObservation> extractSlots(const BevImage& bev, const BevLabels& labels,
                                           const std::vector<LineSegment>& segments,
                                           const BevViews& views, const FloorSigma& sigma,
-                                          const SlotOptions& options = {});
+                                          const SlotOptions& options = {},
+                                          std::vector<SlotTrial>* trials = nullptr);
 
 }  // namespace parkade

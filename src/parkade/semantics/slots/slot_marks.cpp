@@ -11,10 +11,12 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kMeet = 0.35;        // m: lines that end this near to each other meet
-constexpr double kMeetInPaint = 0.6;  // m: the same where labels say that their paint goes on
+constexpr double kMeet = 0.45;        // m: lines that end this near to each other meet
+constexpr double kMeetInPaint = 0.8;  // m: the same where labels say that their paint goes on
+constexpr double kMeetAcross = 0.8;   // m: the same where a bar has its middle
 constexpr double kLeastMet = 0.25;    // m of side line to see, where another line meets it
-constexpr double kLeastOpen = 0.5;    // the same without
+constexpr double kLeastOpen = 0.35;   // the same without
+constexpr double kLongestBar = 0.9;   // m
 constexpr double kSteepest = 0.5;     // sine of the least angle between lines that meet
 constexpr double kBeyond = 0.9;       // m in front of an entrance without its side going on
 
@@ -25,6 +27,7 @@ struct Stroke {
   double length = 0.0;
   double width = 0.0;
   bool is_bar = false;  // of a T: short, and met between its ends
+  bool is_met = false;  // some side ends at it
 
   [[nodiscard]] Vector2d normal() const { return {-along.y(), along.x()}; }
 };
@@ -137,6 +140,7 @@ class MarkFinder {
       openEnd(i, 1.0);
       openEnd(i, -1.0);
     }
+    for (std::size_t i = 0; i < strokes_.size(); ++i) loneBar(i);
     return std::move(marks_);
   }
 
@@ -150,20 +154,23 @@ class MarkFinder {
     const Vector2d between = other.begin - side.begin;
     const double s = (between.x() * other.along.y() - between.y() * other.along.x()) / sine;
     const double t = (between.x() * side.along.y() - between.y() * side.along.x()) / sine;
-    if (s < -kMeetInPaint || s > side.length + kMeetInPaint || t < -kMeetInPaint ||
+    if (s < -kMeetAcross || s > side.length + kMeetAcross || t < -kMeetInPaint ||
         t > other.length + kMeetInPaint) {
       return;
     }
     SlotMark mark;
     mark.p = side.begin + s * side.along;
-    // Lines that only come near to each other have floor between them.
-    if (!reaches(side, s, mark.p) || !reaches(other, t, mark.p)) return;
-    constexpr double kLongestBar = 0.9;
     constexpr double kWithin = 0.15;
-    if (other.length < kLongestBar && t > kWithin && t < other.length - kWithin) {
-      other.is_bar = true;
-    }
+    const bool short_one = other.length < kLongestBar;
+    // Lines that only come near to each other have floor between them; but a side that points at a
+    // bar's middle has lost its own end.
+    const bool at_middle = short_one && std::abs(t - 0.5 * other.length) < kWithin;
+    if (!at_middle && !reaches(side, s, mark.p)) return;
+    if (!reaches(other, t, mark.p)) return;
+    if (short_one && t > kWithin && t < other.length - kWithin) other.is_bar = true;
+    other.is_met = true;
     mark.across = other.along;
+    mark.across_length = other.length;
     mark.side = static_cast<int>(i);
     mark.width = side.width;
     // Its axis is known best at the middle of what is seen of it, and better the longer it is.
@@ -200,7 +207,11 @@ class MarkFinder {
     mark.sigma_along = std::hypot(end->sigma_px * pixel_, 0.01);
     mark.sigma_aside = 0.3 * pixel_;
     for (SlotMark& met : marks_) {
-      if (met.side != mark.side || (met.p - mark.p).norm() >= kMeet) continue;
+      if (met.side != mark.side) continue;
+      const double beyond = (met.p - mark.p).dot(outward);
+      // The line was followed to where another one meets it.
+      if (met.inward.dot(outward) < 0.0 && beyond >= kMeet && beyond < kMeetAcross) return;
+      if ((met.p - mark.p).norm() >= kMeet) continue;
       // Where only a short bar meets the line, its end tells better where that is.
       const bool ends = met.inward.dot(outward) < 0.0 && met.sigma_along > mark.sigma_along;
       if (ends && (met.p - mark.p).norm() < 3.0 * met.sigma_along) {
@@ -210,6 +221,23 @@ class MarkFinder {
       return;
     }
     add(mark, -outward, side.length, kLeastOpen);
+  }
+
+  // A bar of a T whose line is worn or hidden: slots may lie on either hand of it.
+  void loneBar(std::size_t i) {
+    constexpr double kShortestBar = 0.4;  // m
+    const Stroke& bar = strokes_[i];
+    if (bar.is_met || bar.length < kShortestBar || bar.length > kLongestBar) return;
+    SlotMark mark;
+    mark.p = 0.5 * (bar.begin + bar.end);
+    mark.across = bar.along;
+    mark.across_length = bar.length;
+    mark.side = static_cast<int>(i);
+    mark.width = bar.width;
+    mark.sigma_along = 0.3 * pixel_;
+    mark.sigma_aside = 2.0 * pixel_;  // where it is seen to end
+    mark.is_bar = true;
+    for (const double sign : {-1.0, 1.0}) add(mark, sign * bar.normal(), 0.0, 0.0);
   }
 
   void add(SlotMark mark, const Vector2d& inward, double visible, double least) {

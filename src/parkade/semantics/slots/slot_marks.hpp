@@ -16,6 +16,7 @@ struct SlotMark {
   Eigen::Vector2d p = Eigen::Vector2d::Zero();        ///< on the middle of the lines
   Eigen::Vector2d inward = Eigen::Vector2d::UnitX();  ///< unit, along the side line
   Eigen::Vector2d across = Eigen::Vector2d::Zero();   ///< unit, along the line that meets; or zero
+  double across_length = 0.0;                         ///< m, of that line, or 0
   int side = 0;                                       ///< index of the side line
   double visible = 0.0;                               ///< m of the side line, from the mark on
   double width = 0.0;                                 ///< m, of the side line
@@ -23,6 +24,8 @@ struct SlotMark {
   double sigma_aside = 0.0;                           ///< m, across inward, of the picture alone
   /// m, of the entrances in its row where the line is too faint for labels (slot_rows.hpp); or 0.
   double row_width = 0.0;
+
+  bool is_bar = false;  ///< only the bar of a T is seen, no side line
 
   [[nodiscard]] bool isFaint() const { return row_width > 0.0; }
 };

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "parkade/semantics/slots/slot_test_support.hpp"
@@ -50,6 +51,40 @@ TEST(SlotMarks, LinesDoNotMeetOverBareFloor) {
   floor.line({1.5, -3.0}, {0.5, -3.0}, kLine);
   floor.line({2.0, -3.5}, {2.0, -5.5}, kLine);
   EXPECT_EQ(meetings(floor), 0);
+}
+
+// The bar of a T at (2, -3), and what is measured of its line.
+std::vector<SlotMark> marksOfT(double line_from) {
+  PaintedFloor floor;
+  floor.line({1.65, -3.0}, {2.35, -3.0}, kLine);
+  std::vector<LineSegment> segments = {segment({1.65, -3.0}, {2.35, -3.0})};
+  if (line_from > 0.0) {
+    floor.line({2.0, -3.0 - line_from}, {2.0, -5.5}, kLine);
+    segments.push_back(segment({2.0, -3.0 - line_from}, {2.0, -5.5}));
+  }
+  return findSlotMarks(floor.bev.image, LabelProbe(floor.labels), segments);
+}
+
+TEST(SlotMarks, ALineThatPointsAtABarsMiddleMeetsIt) {
+  bool found = false;
+  for (const SlotMark& mark : marksOfT(0.6)) {
+    if (mark.inward.y() > -0.9) continue;
+    EXPECT_LT((mark.p - Vector2d(2.0, -3.0)).norm(), 0.02);
+    EXPECT_FALSE(mark.is_bar);
+    found = true;
+  }
+  EXPECT_TRUE(found);
+}
+
+TEST(SlotMarks, ABarByItselfMayHaveALineOnEitherHand) {
+  int bars = 0;
+  for (const SlotMark& mark : marksOfT(0.0)) {
+    if (!mark.is_bar) continue;
+    EXPECT_LT((mark.p - Vector2d(2.0, -3.0)).norm(), 0.02);
+    EXPECT_NEAR(std::abs(mark.inward.y()), 1.0, 1e-6);
+    ++bars;
+  }
+  EXPECT_EQ(bars, 2);
 }
 
 }  // namespace

@@ -137,5 +137,34 @@ TEST(SlotRanking, ShortSidesWillDo) {
   EXPECT_EQ(slotsOf(floor).size(), 3U);
 }
 
+// A car hides the line between two slots of a row but for its bar.
+TEST(SlotRanking, ABarStandsForItsLine) {
+  Row row;
+  row.count = 3;
+  row.marking = SlotMarking::kT;
+  PaintedFloor floor;
+  row.paint(floor);
+  const double x = row.front(1).x();
+  floor.polygon(
+      {{x + 0.6, -8.0}, {x + 0.6, kFront - 0.1}, {x - 0.6, kFront - 0.1}, {x - 0.6, -8.0}},
+      SemanticClass::kVehicle, 30);
+  const std::vector<SlotObservation> slots = slotsOf(floor);
+  EXPECT_NE(slotAt(slots, row.front(0)), nullptr);
+  EXPECT_NE(slotAt(slots, row.front(1)), nullptr);
+}
+
+// Short pieces of line know their direction badly.
+TEST(SlotRanking, ShortSidesMayBeCrooked) {
+  PaintedFloor floor;
+  const Vector2d left(3.5, kFront);
+  const Vector2d right(1.0, kFront);
+  floor.line(left, left + Vector2d(0.0, -3.0), kLine);
+  floor.line(right, right + Vector2d(0.10, -0.6), kLine);  // 9 degrees off
+  floor.line(left, right, kLine);
+  floor.polygon({{2.9, -8.0}, {2.9, kFront - 0.6}, {0.5, kFront - 0.7}, {0.5, -8.0}},
+                SemanticClass::kVehicle, 30);
+  EXPECT_NE(slotAt(slotsOf(floor), left), nullptr);
+}
+
 }  // namespace
 }  // namespace parkade

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "parkade/semantics/bev_views.hpp"
+#include "parkade/semantics/label_probe.hpp"
+
+namespace parkade {
+
+struct SlotCandidate;
+struct SlotMark;
+
+inline constexpr int kNumSlotClues = 22;
+
+/// What speaks for or against two marks being the entrance of a slot; each from 0 to about 1.
+using SlotClues = std::array<double, kNumSlotClues>;
+
+/// Stable names, by index: the columns of what weights are fitted to (tools/train/slot_weights.py).
+inline constexpr std::array<std::string_view, kNumSlotClues> kSlotClueNames = {
+    "seen",        "way_floor",  "way_paint",     "paint_across",
+    "towards_car", "away",       "lane_beyond",   "closed",
+    "t",           "l",          "stop_in_front", "slanted",
+    "parallel",    "neighbours", "pillar",        "unusual_width",
+    "skew",        "faint",      "turned_out",    "mark_between",
+    "bars",        "angle"};
+
+/// Log-odds of a slot from its clues: logistic regression over candidates in random garages of the
+/// development (docs/math/slots.md, equation (4)).
+double slotLogOdds(const SlotClues& clues);
+
+/// Log-odds that one unit of other candidates' doubt (slot_ranking.hpp) takes from a candidate.
+double slotDoubtWeight();
+
+/// Measures the clues of candidates in one picture.
+class SlotClueFinder {
+ public:
+  SlotClueFinder(const LabelProbe& probe, const BevViews& views) : probe_(probe), views_(views) {}
+
+  /// The clues of all candidates of the picture are set.
+  void measure(std::vector<SlotCandidate>& candidates) const;
+
+ private:
+  [[nodiscard]] SlotClues find(const SlotCandidate& c, double neighbours, double usual_width) const;
+  [[nodiscard]] LabelProbe::Shares wayInFront(const SlotCandidate& c, const Eigen::Vector2d& u,
+                                              const Eigen::Vector2d& ahead) const;
+  [[nodiscard]] double paintAcross(const SlotCandidate& c) const;
+  [[nodiscard]] double wheelStopInFront(const SlotCandidate& c) const;
+  [[nodiscard]] double pillarInside(const SlotCandidate& c) const;
+  [[nodiscard]] bool isPillarFoot(const Eigen::Vector2d& p) const;
+  [[nodiscard]] bool goesOnAsLaneLine(const SlotMark& mark) const;
+
+  const LabelProbe& probe_;
+  const BevViews& views_;
+};
+
+}  // namespace parkade
