@@ -29,6 +29,17 @@ class LabelProbe {
   }
   [[nodiscard]] bool isHidden(const Eigen::Vector2d& p) const { return hidesFloor(at(p)); }
 
+  /// Log-odds, at most 0, of slot line against what is likeliest (BevLabels::slot_line); very low
+  /// beyond the picture and where the network does not tell.
+  [[nodiscard]] double slotEvidence(const Eigen::Vector2d& p) const {
+    constexpr double kNone = -100.0;
+    const Eigen::Vector2d pixel = labels_.geometry.toPixel(p);
+    const int u = static_cast<int>(std::floor(pixel.x() + 0.5));
+    const int v = static_cast<int>(std::floor(pixel.y() + 0.5));
+    if (u < 0 || v < 0 || u >= labels_.slot_line.cols || v >= labels_.slot_line.rows) return kNone;
+    return (labels_.slot_line.at<std::uint8_t>(v, u) - 255.0) / kSlotLinePerLogOdds;
+  }
+
   /// What lies along the line from a to b, as shares of its samples, one per pixel.
   struct Shares {
     double paint = 0.0;

@@ -42,9 +42,9 @@ struct SlotCandidate {
   void complete(double usual);
 };
 
-/// All pairs of marks that have a slot's size and contradict none: no mark between them, lines at
-/// the corners that turn towards each other, sides that do not both end too early; faint lines make
-/// slots of their row's width. Their score is 0 yet (slot_ranking.hpp).
+/// All pairs of marks that have a slot's size and contradict none: no side as plain as theirs
+/// between them, lines that meet them along the entrance, sides that do not both end too early;
+/// faint lines make slots of their row's width. Clues and score are not set yet (slot_ranking.hpp).
 std::vector<SlotCandidate> pairSlotMarks(const std::vector<SlotMark>& marks,
                                          const LabelProbe& probe, const SlotOptions& options);
 

@@ -29,7 +29,7 @@ inline constexpr std::array<std::string_view, kNumSlotClues> kSlotClueNames = {
     "bars",        "angle"};
 
 /// Log-odds of a slot from its clues: logistic regression over candidates in random garages of the
-/// development (docs/math/slots.md, equation (4)).
+/// development (docs/math/slots.md, equation (3c)).
 double slotLogOdds(const SlotClues& clues);
 
 /// Log-odds that one unit of other candidates' doubt (slot_ranking.hpp) takes from a candidate.

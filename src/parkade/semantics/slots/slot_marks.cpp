@@ -18,6 +18,7 @@ constexpr double kLeastMet = 0.25;    // m of side line to see, where another li
 constexpr double kLeastOpen = 0.35;   // the same without
 constexpr double kLongestBar = 0.9;   // m
 constexpr double kSteepest = 0.5;     // sine of the least angle between lines that meet
+constexpr double kFaint = -1.5;       // log-odds of a worn end of a line
 constexpr double kBeyond = 0.9;       // m in front of an entrance without its side going on
 
 struct Stroke {
@@ -62,7 +63,7 @@ class EndFinder {
     double s = 0.0;
     for (; s < kReach && s - last < kClear; s += step) {
       const Vector2d p = start + s * outward;
-      if (probe_.isPaint(p)) {
+      if (probe_.isPaint(p) || isFaintPaint(p)) {
         last = s;
       } else if (probe_.isHidden(p)) {
         return std::nullopt;
@@ -75,6 +76,12 @@ class EndFinder {
   }
 
  private:
+  // Worn ends of lines: floor by its label, and a slot's line nearly as likely.
+  [[nodiscard]] bool isFaintPaint(const Vector2d& p) const {
+    if (probe_.at(p) != SemanticClass::kFloor) return false;
+    return probe_.slotEvidence(p) > kFaint;
+  }
+
   // m along outward from where labels end to where the picture's edge is.
   [[nodiscard]] std::optional<double> edge(const Vector2d& at, const Vector2d& outward,
                                            double width) const {
@@ -163,9 +170,10 @@ class MarkFinder {
     constexpr double kWithin = 0.15;
     const bool short_one = other.length < kLongestBar;
     // Lines that only come near to each other have floor between them; but a side that points at a
-    // bar's middle has lost its own end.
+    // line that passes, or at a bar's middle, has lost its own end.
+    const bool passes = !short_one && t > 0.0 && t < other.length;
     const bool at_middle = short_one && std::abs(t - 0.5 * other.length) < kWithin;
-    if (!at_middle && !reaches(side, s, mark.p)) return;
+    if (!passes && !at_middle && !reaches(side, s, mark.p)) return;
     if (!reaches(other, t, mark.p)) return;
     if (short_one && t > kWithin && t < other.length - kWithin) other.is_bar = true;
     other.is_met = true;

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "parkade/semantics/slots/slot_test_support.hpp"
@@ -74,6 +76,32 @@ TEST(SlotMarks, ALineThatPointsAtABarsMiddleMeetsIt) {
     found = true;
   }
   EXPECT_TRUE(found);
+}
+
+// Worn ends of lines are floor by their labels, but the network holds them for paint nearly as
+// much.
+double openEndOf(double doubt) {
+  PaintedFloor floor;
+  floor.line({2.0, -3.5}, {2.0, -5.5}, kLine);
+  floor.labels.slot_line = cv::Mat(floor.labels.labels.size(), CV_8UC1, cv::Scalar(0));
+  const BevGeometry& g = floor.labels.geometry;
+  for (double y = -3.5; y < -3.0; y += 0.5 * g.metres_per_px) {
+    const Vector2d p = g.toPixel(Vector2d(2.0, y));
+    floor.labels.slot_line.at<std::uint8_t>(static_cast<int>(std::floor(p.y() + 0.5)),
+                                            static_cast<int>(std::floor(p.x() + 0.5))) =
+        static_cast<std::uint8_t>(255.0 - doubt * kSlotLinePerLogOdds);
+  }
+  double y = -10.0;
+  for (const SlotMark& mark : findSlotMarks(floor.bev.image, LabelProbe(floor.labels),
+                                            {segment({2.0, -3.5}, {2.0, -5.5})})) {
+    if (mark.inward.y() < 0.0) y = std::max(y, mark.p.y());
+  }
+  return y;
+}
+
+TEST(SlotMarks, WornEndsOfLinesAreFollowed) {
+  EXPECT_NEAR(openEndOf(1.0), -3.06, 0.06);
+  EXPECT_NEAR(openEndOf(4.0), -3.56, 0.08);
 }
 
 TEST(SlotMarks, ABarByItselfMayHaveALineOnEitherHand) {

@@ -10,11 +10,10 @@
 
 namespace parkade {
 
-/// Sets the score (log-odds of being a slot) of each candidate: sides, corners and a way in front
-/// that are seen speak for it, paint inside against it; then what the others say: where neighbours
-/// are narrower, a wide one has probably taken in the gap beside a pillar, whose line is hidden;
-/// and where a pillar's foot is seen in the way in, this is the gap between two slots along the
-/// aisle. Returns those that are told, best first: likely enough (min_confidence) and overlapping
+/// Sets clues, doubt and score (log-odds of being a slot) of each candidate: what is seen of it
+/// (slot_clues.hpp), then what the others say: where neighbours are narrower, a wide one has
+/// probably taken in the gap beside a pillar, whose line is hidden; lines belong to one slot or the
+/// other. Returns those that are told, best first: likely enough (min_confidence) and overlapping
 /// no likelier one. They point into candidates.
 std::vector<const SlotCandidate*> likelySlots(std::vector<SlotCandidate>& candidates,
                                               const LabelProbe& probe, const BevViews& views,

@@ -65,19 +65,6 @@ TEST(SlotRanking, AWideSlotIsOneWhereItsFrontEnds) {
   }
 }
 
-TEST(SlotRanking, SlotsEndWhereLaneLinesBegin) {
-  Row row;
-  row.width = 3.4;
-  row.count = 1;
-  row.marking = SlotMarking::kT;
-  PaintedFloor floor;
-  row.paint(floor);
-  EXPECT_EQ(slotsOf(floor).size(), 1U);
-  floor.line(row.front(1) + Vector2d(0.2, 0.0), row.front(1) + Vector2d(1.2, 0.0), kLine,
-             SemanticClass::kLaneLine);
-  EXPECT_TRUE(slotsOf(floor).empty());
-}
-
 TEST(SlotRanking, RearsAreNoEntrances) {
   Row row;
   row.depth = 4.8;
