@@ -102,6 +102,19 @@ class BenchErrorTest(unittest.TestCase):
         self.assertLessEqual({"true", "shaken", "network"}, kinds)
 
 
+    def test_slot_trials(self):
+        result = bench("semantics", "--samples", self.out, "--slot-trials")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("--slot-trials goes with --out", result.stderr)
+        result = bench("semantics", "--garages", "random:440-440", "--out", self.out, "--slot-trials",
+                       "--labels", "truth", "--fast", "--set", "frames=3", "--set", "coarse_light=true")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        header, *rows = (self.out / "slot_trials.csv").read_text().splitlines()
+        self.assertTrue(header.startswith("garage,right,doubt,seen,"))
+        self.assertTrue(any(row.startswith("440,1,") for row in rows))
+        self.assertEqual({len(row.split(",")) for row in rows}, {len(header.split(","))})
+
+
 class PageParser(html.parser.HTMLParser):
     """Gathers what a page would load, and tags left open."""
 

@@ -5,12 +5,18 @@
 
 import pathlib
 import re
+import subprocess
 import sys
+import tempfile
 import unittest
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(SOURCE / "tools" / "train"))
 
+try:
+    import numpy as np
+except ImportError:
+    np = None
 try:
     import torch
     from torch.nn import functional as F
@@ -34,6 +40,46 @@ class ClassesTest(unittest.TestCase):
         bev = NETWORKS["bev"]["classes"]
         marker = SEMANTIC_CLASSES.index("zone_marker")
         self.assertEqual(label_table("bev")[marker], bev.index("pillar"))
+
+
+@unittest.skipIf(np is None, "python3-numpy is not installed")
+class SlotWeightsTest(unittest.TestCase):
+    def run_tool(self, text):
+        with tempfile.TemporaryDirectory() as folder:
+            trials = pathlib.Path(folder) / "slot_trials.csv"
+            trials.write_text(text)
+            out = pathlib.Path(folder) / "weights.hpp"
+            result = subprocess.run([sys.executable, SOURCE / "tools/train/slot_weights.py", trials, "--out", out],
+                                    capture_output=True, text=True)
+            return result, out.read_text() if out.exists() else ""
+
+    def test_weights_follow_the_candidates(self):
+        rows = []
+        for i in range(400):
+            right = i % 2
+            rows.append(f"{i % 10},{right},{0 if right else 3},{0.9 if right else 0.2},0.5,0")
+        result, text = self.run_tool("garage,right,doubt,seen,way_floor,parallel\n" + "\n".join(rows))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        weights = {name: float(value) for value, name in re.findall(r"(-?[0-9.]+), *// (\w+)", text)}
+        self.assertEqual(list(weights), ["seen", "way_floor", "parallel"])
+        self.assertGreater(weights["seen"], 1.5)
+        self.assertGreater(float(re.search(r"kSlotDoubtWeight = (\S+);", text)[1]), 0.5)
+
+    def test_other_files_are_refused(self):
+        for text, message in (("", "no slot_trials.csv"), ("a,b\n1,2\n", "no slot_trials.csv"),
+                              ("garage,right,doubt,parallel\n", "no candidates"),
+                              ("garage,right,doubt,parallel\n1,1,0,x\n", "could not convert")):
+            result, written = self.run_tool(text)
+            self.assertEqual(result.returncode, 1)
+            self.assertIn(message, result.stderr)
+            self.assertEqual(written, "")
+
+    def test_weights_are_of_the_programs_clues(self):
+        folder = SOURCE / "src/parkade/semantics/slots"
+        text = (folder / "slot_clues.hpp").read_text(encoding="utf-8")
+        text = text[text.index("kSlotClueNames =") :]
+        names = re.findall(r'"([a-z_]+)"', text[: text.index(";")])
+        self.assertEqual(re.findall(r"// (\w+)$", (folder / "slot_weights.hpp").read_text(), re.M), names)
 
 
 @unittest.skipIf(torch is None, "python3-torch is not installed")

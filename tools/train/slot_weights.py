@@ -15,26 +15,38 @@ Example:
 import argparse
 import csv
 import pathlib
+import sys
 
 import numpy as np
 
 FOLDS = 5
-# Weights that were set by hand before: where candidates tell little, these stand.
+# After the weights set by hand before: where candidates tell little, these stand.
 BY_HAND = {"doubt": -1.0, "seen": 1.0, "way_floor": 2.0, "way_paint": -6.0, "paint_across": -5.0, "towards_car": 1.5,
            "away": -3.0, "lane_beyond": -4.0, "closed": 1.0, "t": 1.0, "l": 0.7, "stop_in_front": -6.0,
            "neighbours": 1.0, "pillar": -5.0}
 
 
 def read(paths):
-    rows = []
+    names, rows = None, []
     for path in paths:
-        with open(path, newline="") as file:
-            reader = csv.reader(file)
-            names = next(reader)
-            rows += [[float(cell) for cell in row] for row in reader]
+        try:
+            with open(path, newline="") as file:
+                header, *lines = list(csv.reader(file)) or [[]]
+            if header[:3] != ["garage", "right", "doubt"] or "parallel" not in header:
+                sys.exit(f"{path}: no slot_trials.csv of parkade bench semantics --slot-trials")
+            if names not in (None, header[3:]):
+                sys.exit(f"{path}: other columns than {paths[0]}")
+            names = header[3:]
+            rows += [[float(cell) for cell in line] for line in lines]
+        except (OSError, ValueError) as error:
+            sys.exit(f"{path}: {error}")
+    if not rows or len({len(row) for row in rows}) != 1:
+        sys.exit(f"{', '.join(paths)}: no candidates, or lines of different lengths")
     table = np.array(rows)
-    # garage, right, doubt, clues...
-    return names[3:], table[:, 0].astype(int), table[:, 1], np.minimum(table[:, 2:], 10.0)
+    garages = table[:, 0].astype(int)
+    if len(set(garages % FOLDS)) < 2:
+        sys.exit(f"{', '.join(paths)}: garages of one fold only (seed modulo {FOLDS}); give more garages")
+    return names, garages, table[:, 1], table[:, 2:]  # doubt, clues...
 
 
 def counts(names, inputs, right, along):
@@ -104,6 +116,7 @@ def main():
         log_odds[out] = inputs[out] @ weights + intercept
     report(garages, right, log_odds)
     weights, intercept = fit(names, inputs, right, count, args.prior)
+    print(f"one unit of doubt takes {-weights[0]:.2f}")
     write(args.out, names, weights, intercept)
 
 

@@ -219,6 +219,11 @@ int run(BenchArguments& arguments) {
     const Status status = setOption(asOptions(arguments.options), setting);
     if (!status) return fail(status.error());
   }
+  if (arguments.slot_trials && !(arguments.samples.empty() && arguments.marking_points.empty())) {
+    return fail(
+        {"bench semantics: --slot-trials goes with --out DIR, not with --samples or "
+         "--marking-points"});
+  }
   if (!arguments.marking_points.empty()) {
     const Status status =
         arguments.out.empty() || !arguments.samples.empty()

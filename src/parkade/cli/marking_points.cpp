@@ -186,7 +186,8 @@ class Scorer {
     found.all = found.corners;
     const cv::Mat light = rescaled(grey, bev.geometry.metres_per_px).image;
     for (const SlotMark& mark : findSlotMarks(light, LabelProbe(*labels), lines.segments)) {
-      if (!mark.across.isZero() && !mark.is_bar) addTo(found.meetings, mark.p);
+      if (mark.is_bar) continue;  // no line meets it in sight
+      if (!mark.across.isZero()) addTo(found.meetings, mark.p);
       addTo(found.all, mark.p);
     }
     return found;

@@ -44,10 +44,14 @@ struct TrueSlot {
 class SlotScore : public SampleScore {
  public:
   SlotScore(SlotScoreOptions options, std::optional<SegmentationNetwork> network)
-      : options_(std::move(options)), network_(std::move(network)) {
-    if (options_.trials.empty()) return;
+      : options_(std::move(options)), network_(std::move(network)) {}
+
+  // Where all candidates are asked for.
+  Status openTrials() {
+    if (options_.trials.empty()) return {};
     trials_.open(options_.trials);
     trials_ << fmt::format("garage,right,doubt,{}\n", fmt::join(kSlotClueNames, ","));
+    return checkTrials();
   }
 
   Status begin(const SemanticSampler& sampler) override {
@@ -98,6 +102,7 @@ class SlotScore : public SampleScore {
   void compare(const BevGeometry& geometry, const std::vector<SlotObservation>& found,
                const std::vector<TrueSlot>& slots);
   Status writeTrials(const std::vector<SlotTrial>& trials, const std::vector<TrueSlot>& slots);
+  Status checkTrials();
 
   void measure(const BevGeometry& geometry, const SlotObservation& found, const TrueSlot& truth);
   Status draw(const SemanticSample& sample, const BevLabels& labels, const Lines& lines,
@@ -248,7 +253,11 @@ Status SlotScore::writeTrials(const std::vector<SlotTrial>& trials,
     trials_ << fmt::format("{},{:d},{:.3f},{:.4f}\n", garage_, right, trial.doubt,
                            fmt::join(trial.clues, ","));
   }
-  if (!trials_) return Error{fmt::format("{}: cannot be written", options_.trials)};
+  return checkTrials();
+}
+
+Status SlotScore::checkTrials() {
+  if (!trials_.flush()) return Error{fmt::format("{}: cannot be written", options_.trials)};
   return {};
 }
 
@@ -356,7 +365,9 @@ Result<std::unique_ptr<SampleScore>> makeSlotScore(const SlotScoreOptions& optio
     const Status status = makeFolders(options.pictures);
     if (!status) return status.error();
   }
-  return std::unique_ptr<SampleScore>(new SlotScore(options, std::move(network)));
+  auto score = std::make_unique<SlotScore>(options, std::move(network));
+  if (const Status status = score->openTrials(); !status) return status.error();
+  return std::unique_ptr<SampleScore>(std::move(score));
 }
 
 }  // namespace parkade::cli

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
+#include <optional>
 
 #include "parkade/semantics/lines/line_chains.hpp"
 #include "parkade/types/semantic_features.hpp"
@@ -16,13 +18,8 @@ class LabelProbe {
 
   /// kUnknown beyond the picture.
   [[nodiscard]] SemanticClass at(const Eigen::Vector2d& p) const {
-    const Eigen::Vector2d pixel = labels_.geometry.toPixel(p);
-    const int u = static_cast<int>(std::floor(pixel.x() + 0.5));
-    const int v = static_cast<int>(std::floor(pixel.y() + 0.5));
-    if (u < 0 || v < 0 || u >= labels_.labels.cols || v >= labels_.labels.rows) {
-      return SemanticClass::kUnknown;
-    }
-    return static_cast<SemanticClass>(labels_.labels.at<std::uint8_t>(v, u));
+    return static_cast<SemanticClass>(
+        valueAt(labels_.labels, p).value_or(static_cast<std::uint8_t>(SemanticClass::kUnknown)));
   }
   [[nodiscard]] bool isPaint(const Eigen::Vector2d& p) const {
     return at(p) == SemanticClass::kSlotLine;
@@ -33,11 +30,8 @@ class LabelProbe {
   /// beyond the picture and where the network does not tell.
   [[nodiscard]] double slotEvidence(const Eigen::Vector2d& p) const {
     constexpr double kNone = -100.0;
-    const Eigen::Vector2d pixel = labels_.geometry.toPixel(p);
-    const int u = static_cast<int>(std::floor(pixel.x() + 0.5));
-    const int v = static_cast<int>(std::floor(pixel.y() + 0.5));
-    if (u < 0 || v < 0 || u >= labels_.slot_line.cols || v >= labels_.slot_line.rows) return kNone;
-    return (labels_.slot_line.at<std::uint8_t>(v, u) - 255.0) / kSlotLinePerLogOdds;
+    const std::optional<std::uint8_t> value = valueAt(labels_.slot_line, p);
+    return value ? (*value - 255.0) / kSlotLinePerLogOdds : kNone;
   }
 
   /// What lies along the line from a to b, as shares of its samples, one per pixel.
@@ -78,6 +72,16 @@ class LabelProbe {
   [[nodiscard]] const BevLabels& labels() const { return labels_; }
 
  private:
+  // Of a picture (CV_8UC1) of the labels' size, or an empty one.
+  [[nodiscard]] std::optional<std::uint8_t> valueAt(const cv::Mat& picture,
+                                                    const Eigen::Vector2d& p) const {
+    const Eigen::Vector2d pixel = labels_.geometry.toPixel(p);
+    const int u = static_cast<int>(std::floor(pixel.x() + 0.5));
+    const int v = static_cast<int>(std::floor(pixel.y() + 0.5));
+    if (u < 0 || v < 0 || u >= picture.cols || v >= picture.rows) return std::nullopt;
+    return picture.at<std::uint8_t>(v, u);
+  }
+
   const BevLabels& labels_;
 };
 

@@ -191,7 +191,7 @@ void tellSlotsFromLanes(const cv::Mat& slot_line, double metres_per_px, cv::Mat&
   constexpr double kDoubtful = 4.0;   // log-odds, on average, where they touch
   constexpr double kDoubtfulT = 3.0;  // the same of what has a T's or an L's shape
   constexpr double kBothWays = 0.35;  // m that such measure at least
-  constexpr double kWidest = 0.9;
+  constexpr double kWidest = 0.9;     // m: larger ones turn a corner of the aisle
   if (slot_line.empty()) return;
   const cv::Mat lane = labels == kLane;
   if (cv::countNonZero(lane) == 0) return;
@@ -217,10 +217,12 @@ void tellSlotsFromLanes(const cv::Mat& slot_line, double metres_per_px, cv::Mat&
   for (const Piece& piece : pieces) {
     if (piece.pixels.size() < kLeast) continue;
     const double below = piece.below / static_cast<double>(piece.pixels.size());
+    if (below > kDoubtful) continue;
     const cv::Size2f box = cv::minAreaRect(piece.pixels).size;
     const double narrow = std::min(box.width, box.height) * metres_per_px;
-    const bool t_shaped = narrow > kBothWays && narrow < kWidest && below < kDoubtfulT;
-    if (!t_shaped && (piece.touching < kTouch || below > kDoubtful)) continue;
+    const bool t_shaped = narrow > kBothWays && narrow < kWidest && below < kDoubtfulT &&
+                          isPlainStroke(lane, piece.pixels, metres_per_px);
+    if (!t_shaped && piece.touching < kTouch) continue;
     for (const cv::Point& p : piece.pixels) labels.at<std::uint8_t>(p) = kSlot;
   }
 }

@@ -15,7 +15,7 @@ void tellStrokesFromArrows(const cv::Mat& slot_line, double metres_per_px, cv::M
 
 /// Lane lines end where slots begin: paint labelled lane line that touches a slot's line, and that
 /// the network holds nearly as likely for one (4 log-odds less on average), becomes slot line; so
-/// does what has the shape of a T or an L, which lane lines do not make (3 less). slot_line,
+/// does what has the shape of a T or an L, which lane lines rarely make (3 less). slot_line,
 /// labels: as above.
 void tellSlotsFromLanes(const cv::Mat& slot_line, double metres_per_px, cv::Mat& labels);
 

@@ -16,9 +16,9 @@ using Eigen::Vector2d;
 
 constexpr double kSquare = 0.1392;      // cosine of 82 degrees: what is nearer to 90 is square
 constexpr double kMostSlant = 0.82;     // cosine of 35 degrees
-constexpr double kAlongFront = 0.1745;  // 10 degrees
-constexpr double kSideBySide = 0.1047;  // 6 degrees
-constexpr double kMostOff = 0.45;
+constexpr double kAlongFront = 0.1745;  // rad, 10 degrees
+constexpr double kSideBySide = 0.1047;  // rad, 6 degrees
+constexpr double kMostOff = 0.45;       // rad, however short
 constexpr double kEndOff = 0.06;  // m, of a piece of line: short ones know their direction badly
 
 class MarkPairing {
@@ -84,9 +84,13 @@ class MarkPairing {
   }
 
   [[nodiscard]] static bool runSideBySide(const SlotMark& left, const SlotMark& right) {
-    const double shorter = std::max(std::min(left.visible, right.visible), 0.1);
-    return left.inward.dot(right.inward) >
-           std::cos(std::min(kSideBySide + kEndOff / shorter, kMostOff));
+    // What is seen of a mark's direction: of a bar its own length.
+    const auto seen = [](const SlotMark& mark) {
+      return mark.is_bar ? mark.across_length : mark.visible;
+    };
+    const double shorter = std::max(std::min(seen(left), seen(right)), 0.1);
+    const double allowed = std::min(kSideBySide + kEndOff / shorter, kMostOff);
+    return left.inward.dot(right.inward) > std::cos(allowed);
   }
 
   // Faint lines make slots as wide as the others of their row.
@@ -141,7 +145,7 @@ class MarkPairing {
       double best = 0.0;
       bool ended = false;
       for (const SlotMark& mark : marks_) {
-        if (mark.side != front.side || mark.inward.dot(front.inward) > 0.0) continue;
+        if (mark.side != front.side || mark.inward.dot(front.inward) > -kParallelSides) continue;
         const double depth = (mark.p - front.p).dot(c.inward);
         if (depth >= least && depth <= most && (best == 0.0 || depth < best)) best = depth;
         if (depth > 0.0 && depth < least && endsFor(front, depth, least)) ended = true;

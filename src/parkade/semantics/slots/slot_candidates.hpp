@@ -43,8 +43,9 @@ struct SlotCandidate {
 };
 
 /// All pairs of marks that have a slot's size and contradict none: no side as plain as theirs
-/// between them, lines that meet them along the entrance, sides that do not both end too early;
-/// faint lines make slots of their row's width. Clues and score are not set yet (slot_ranking.hpp).
+/// between them (along the aisle: none at all), lines that meet them along the entrance within a
+/// tolerance by their length, sides that do not both end too early; faint lines make slots of their
+/// row's width. Clues and score are not set yet (slot_ranking.hpp).
 std::vector<SlotCandidate> pairSlotMarks(const std::vector<SlotMark>& marks,
                                          const LabelProbe& probe, const SlotOptions& options);
 

@@ -40,7 +40,7 @@ class SlotClueFinder {
  public:
   SlotClueFinder(const LabelProbe& probe, const BevViews& views) : probe_(probe), views_(views) {}
 
-  /// The clues of all candidates of the picture are set.
+  /// Sets the clues of all candidates of a picture.
   void measure(std::vector<SlotCandidate>& candidates) const;
 
  private:

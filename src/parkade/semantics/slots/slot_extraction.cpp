@@ -52,6 +52,18 @@ SlotObservation observe(const SlotCandidate& c, const LabelProbe& probe, const B
   return slot;
 }
 
+// As they are decided on: of the rows those with faint marks.
+void addTrials(const std::vector<SlotCandidate>& candidates,
+               const std::vector<SlotCandidate>& in_rows, std::vector<SlotTrial>& trials) {
+  const auto add = [&trials](const SlotCandidate& c) {
+    trials.push_back({c.left->p, c.right->p, c.clues, c.doubt});
+  };
+  for (const SlotCandidate& c : candidates) add(c);
+  for (const SlotCandidate& c : in_rows) {
+    if (c.left->isFaint() || c.right->isFaint()) add(c);
+  }
+}
+
 }  // namespace
 
 std::vector<SlotObservation> extractSlots(const BevImage& bev, const BevLabels& labels,
@@ -80,11 +92,7 @@ std::vector<SlotObservation> extractSlots(const BevImage& bev, const BevLabels& 
     }
     likely = withoutOverlaps(std::move(likely));
   }
-  if (trials != nullptr) {
-    for (const SlotCandidate& c : in_rows.empty() ? candidates : in_rows) {
-      trials->push_back({c.left->p, c.right->p, c.clues, c.doubt});
-    }
-  }
+  if (trials != nullptr) addTrials(candidates, in_rows, *trials);
   std::vector<SlotObservation> slots;
   for (const SlotCandidate* slot : likely) slots.push_back(observe(*slot, probe, views, sigma));
   return slots;

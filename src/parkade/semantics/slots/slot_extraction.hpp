@@ -58,7 +58,7 @@ struct FloorSigma {
 
 /// A candidate and what was held for and against it: what weights are fitted to.
 struct SlotTrial {
-  Eigen::Vector2d left = Eigen::Vector2d::Zero();
+  Eigen::Vector2d left = Eigen::Vector2d::Zero();  ///< m, level frame: entrance corners
   Eigen::Vector2d right = Eigen::Vector2d::Zero();
   SlotClues clues = {};
   double doubt = 0.0;

@@ -13,7 +13,7 @@ using Eigen::Vector2d;
 
 constexpr double kMeet = 0.45;        // m: lines that end this near to each other meet
 constexpr double kMeetInPaint = 0.8;  // m: the same where labels say that their paint goes on
-constexpr double kMeetAcross = 0.8;   // m: the same where a bar has its middle
+constexpr double kMeetAcross = 0.8;   // m: the same at lines that pass and at the middles of bars
 constexpr double kLeastMet = 0.25;    // m of side line to see, where another line meets it
 constexpr double kLeastOpen = 0.35;   // the same without
 constexpr double kLongestBar = 0.9;   // m
@@ -176,7 +176,6 @@ class MarkFinder {
     if (!passes && !at_middle && !reaches(side, s, mark.p)) return;
     if (!reaches(other, t, mark.p)) return;
     if (short_one && t > kWithin && t < other.length - kWithin) other.is_bar = true;
-    other.is_met = true;
     mark.across = other.along;
     mark.across_length = other.length;
     mark.side = static_cast<int>(i);
@@ -187,8 +186,9 @@ class MarkFinder {
     const double off = (t - 0.5 * other.length) / length;
     mark.sigma_along = own * std::sqrt(1.0 + 12.0 * off * off) / std::abs(sine);
     mark.sigma_aside = 0.3 * pixel_;
-    add(mark, side.along, side.length - s, kLeastMet);
-    add(mark, -side.along, s, kLeastMet);
+    const bool ahead = add(mark, side.along, side.length - s, kLeastMet);
+    const bool behind = add(mark, -side.along, s, kLeastMet);
+    if (ahead || behind) other.is_met = true;
   }
 
   // Whether the paint of a line goes on to p, which lies s m along it.
@@ -217,7 +217,7 @@ class MarkFinder {
     for (SlotMark& met : marks_) {
       if (met.side != mark.side) continue;
       const double beyond = (met.p - mark.p).dot(outward);
-      // The line was followed to where another one meets it.
+      // Another line meets it farther out: its own end is worn.
       if (met.inward.dot(outward) < 0.0 && beyond >= kMeet && beyond < kMeetAcross) return;
       if ((met.p - mark.p).norm() >= kMeet) continue;
       // Where only a short bar meets the line, its end tells better where that is.
@@ -248,10 +248,11 @@ class MarkFinder {
     for (const double sign : {-1.0, 1.0}) add(mark, sign * bar.normal(), 0.0, 0.0);
   }
 
-  void add(SlotMark mark, const Vector2d& inward, double visible, double least) {
-    if (visible < least) return;
+  // Whether there is such a mark now.
+  bool add(SlotMark mark, const Vector2d& inward, double visible, double least) {
+    if (visible < least) return false;
     const double margin = std::max(0.12, mark.width);
-    if (probe_.along(mark.p - margin * inward, mark.p - kBeyond * inward).paint > 0.3) return;
+    if (probe_.along(mark.p - margin * inward, mark.p - kBeyond * inward).paint > 0.3) return false;
     mark.inward = inward;
     mark.visible = visible;
     for (SlotMark& other : marks_) {
@@ -259,9 +260,10 @@ class MarkFinder {
       if (other.inward.dot(mark.inward) < 0.0) continue;
       // Two pieces of one line meet here: the better known one tells.
       if (mark.sigma_along < other.sigma_along) other = mark;
-      return;
+      return true;
     }
     marks_.push_back(mark);
+    return true;
   }
 
   const LabelProbe& probe_;

@@ -47,7 +47,7 @@ class SlotRanking {
  private:
   // What the other candidates say against each one.
   void weighAgainstOthers() {
-    constexpr double kMost = 6.0;  // log-odds
+    constexpr double kMost = 6.0;
     std::vector<double> doubts;
     for (const SlotCandidate& c : candidates_) {
       double doubt = 0.0;
@@ -61,10 +61,10 @@ class SlotRanking {
   }
 
   // Beside a pillar the gap between two slots is easily taken into one of them: the line between is
-  // hidden or worn. Where others are narrower, a wide one is told only if the place of that line is
-  // seen to be bare, or if its front is painted from corner to corner and no further: nothing was
-  // taken into it then. What borders on a perpendicular slot is no parallel one, and the entrances
-  // of slots that share a line lie in one line.
+  // hidden or worn. Where others are narrower, a wide one is doubtful, less so if the place of that
+  // line is seen to be bare, and not if its front is painted from corner to corner and no further:
+  // nothing was taken into it then. What borders on a likelier perpendicular slot is hardly a
+  // parallel one, and the entrances of slots that share a line lie in one line.
   [[nodiscard]] double doubtBy(const SlotCandidate& c, const SlotCandidate& other) const {
     constexpr double kSure = 1.0;    // log-odds of what speaks against others
     constexpr double kWider = 0.35;  // m

@@ -175,7 +175,9 @@ std::vector<SlotMark> findFaintMarks(const BevLabels& labels,
       const RowScan scan(labels, origin, u, slot->inward, kWidths * width + kPillar);
       for (const RowScan::Peak& peak : scan.peaks(min_contrast)) {
         SlotMark mark = faintMark(*slot, from, origin + peak.at * u, peak, pixel);
-        const auto known = [&](const SlotMark& other) { return isSame(mark, other, u); };
+        const auto known = [&](const SlotMark& other) {
+          return !other.is_bar && isSame(mark, other, u);
+        };
         if (std::any_of(marks.begin(), marks.end(), known) ||
             std::any_of(faint.begin(), faint.end(), known)) {
           continue;

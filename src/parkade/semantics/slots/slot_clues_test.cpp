@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/semantics/slots/slot_clues.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "parkade/semantics/slots/slot_test_support.hpp"
+
+namespace parkade {
+namespace {
+
+using Eigen::Vector2d;
+
+double clue(const SlotClues& clues, std::string_view name) {
+  const auto it = std::find(kSlotClueNames.begin(), kSlotClueNames.end(), name);
+  EXPECT_NE(it, kSlotClueNames.end()) << name;
+  return clues[static_cast<std::size_t>(it - kSlotClueNames.begin())];
+}
+
+// Of the pair of marks at the corners of the row's i-th slot.
+SlotClues cluesOf(const PaintedFloor& floor, const Row& row, int i = 0) {
+  const Lines lines = extractLines(floor.bev, floor.labels, 0.0);
+  std::vector<SlotTrial> trials;
+  extractSlots(floor.bev, floor.labels, lines.segments, BevViews::fromMiddle(floor.labels.geometry),
+               {}, {}, &trials);
+  for (const SlotTrial& trial : trials) {
+    if ((trial.left - row.front(i)).norm() < 0.1 && (trial.right - row.front(i + 1)).norm() < 0.1) {
+      return trial.clues;
+    }
+  }
+  ADD_FAILURE() << "no such pair";
+  return {};
+}
+
+TEST(SlotClues, OfAPlainRow) {
+  Row row;
+  PaintedFloor floor;
+  row.paint(floor);
+  const SlotClues clues = cluesOf(floor, row);
+  EXPECT_EQ(clue(clues, "seen"), 1.0);
+  EXPECT_EQ(clue(clues, "closed"), 1.0);
+  EXPECT_GT(clue(clues, "way_floor"), 0.9);
+  EXPECT_GT(clue(clues, "neighbours"), 0.4);
+  EXPECT_LT(clue(clues, "skew"), 0.05);
+  for (const char* name : {"way_paint", "paint_across", "away", "lane_beyond", "stop_in_front",
+                           "slanted", "parallel", "pillar", "faint", "turned_out", "bars"}) {
+    EXPECT_EQ(clue(clues, name), 0.0) << name;
+  }
+  EXPECT_GT(slotLogOdds(clues), 2.0);
+}
+
+TEST(SlotClues, WheelStopsAtTheEntrance) {
+  Row row;
+  PaintedFloor floor;
+  row.paint(floor);
+  const double before = slotLogOdds(cluesOf(floor, row));
+  const Vector2d middle = 0.5 * (row.front(0) + row.front(1));
+  PaintedFloor stop = floor;
+  stop.line(middle + Vector2d(0.9, -0.6), middle + Vector2d(-0.9, -0.6), 0.2,
+            SemanticClass::kWheelStop, 150);
+  EXPECT_GT(clue(cluesOf(stop, row), "stop_in_front"), 0.5);
+  EXPECT_LT(slotLogOdds(cluesOf(stop, row)), before - 3.0);
+}
+
+TEST(SlotClues, SlotsAlongTheAisleAreParallel) {
+  Row row;
+  row.width = 6.0;
+  row.depth = 2.3;
+  row.count = 1;
+  PaintedFloor floor;
+  row.paint(floor);
+  const SlotClues clues = cluesOf(floor, row);
+  EXPECT_EQ(clue(clues, "parallel"), 1.0);
+  EXPECT_EQ(clue(clues, "unusual_width"), 0.0);
+}
+
+}  // namespace
+}  // namespace parkade
