@@ -101,7 +101,6 @@ class BenchErrorTest(unittest.TestCase):
             kinds |= {line.split(",")[4] for line in lines[1:]}
         self.assertLessEqual({"true", "shaken", "network"}, kinds)
 
-
     def test_slot_trials(self):
         result = bench("semantics", "--samples", self.out, "--slot-trials")
         self.assertEqual(result.returncode, 1)

@@ -75,7 +75,8 @@ class SlotScore : public SampleScore {
     std::vector<SlotTrial> trials;
     const std::vector<SlotObservation> found =
         extractSlots(sample.bev, labels, lines.segments, views_,
-                     {options_.attitude_sigma, options_.height_sigma}, {}, &trials);
+                     {options_.attitude_sigma, options_.height_sigma}, {},
+                     options_.trials.empty() ? nullptr : &trials);
     const std::vector<TrueSlot> slots = trueSlots(sampler, sample, truth);
     if (Status status = writeTrials(trials, slots); !status) return status;
     compare(sample.bev.geometry, found, slots);

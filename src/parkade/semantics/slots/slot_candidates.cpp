@@ -21,6 +21,12 @@ constexpr double kSideBySide = 0.1047;  // rad, 6 degrees
 constexpr double kMostOff = 0.45;       // rad, however short
 constexpr double kEndOff = 0.06;  // m, of a piece of line: short ones know their direction badly
 
+// How far (rad) the direction of a line may be off of which so much (m) is seen.
+double allowedAngle(double usual, double seen) {
+  constexpr double kShortest = 0.1;  // m
+  return std::min(usual + kEndOff / std::max(seen, kShortest), kMostOff);
+}
+
 class MarkPairing {
  public:
   MarkPairing(const std::vector<SlotMark>& marks, const LabelProbe& probe,
@@ -60,10 +66,8 @@ class MarkPairing {
     if (cosine > kMostSlant) return std::nullopt;
     for (const SlotMark* mark : {&left, &right}) {
       if (mark->across.isZero()) continue;
-      const double allowed = kAlongFront + kEndOff / std::max(mark->across_length, 0.1);
-      if (std::abs(cross(mark->across, front)) > std::sin(std::min(allowed, kMostOff)) * length) {
-        return std::nullopt;
-      }
+      const double allowed = allowedAngle(kAlongFront, mark->across_length);
+      if (std::abs(cross(mark->across, front)) > std::sin(allowed) * length) return std::nullopt;
     }
     c.shape = cosine > kSquare ? SlotShape::kSlanted : SlotShape::kPerpendicular;
     if (width < options_.min_width_m || width > options_.max_width_m) {
@@ -88,9 +92,8 @@ class MarkPairing {
     const auto seen = [](const SlotMark& mark) {
       return mark.is_bar ? mark.across_length : mark.visible;
     };
-    const double shorter = std::max(std::min(seen(left), seen(right)), 0.1);
-    const double allowed = std::min(kSideBySide + kEndOff / shorter, kMostOff);
-    return left.inward.dot(right.inward) > std::cos(allowed);
+    const double shorter = std::min(seen(left), seen(right));
+    return left.inward.dot(right.inward) > std::cos(allowedAngle(kSideBySide, shorter));
   }
 
   // Faint lines make slots as wide as the others of their row.

@@ -34,6 +34,8 @@ struct SlotCandidate {
                                             Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
 
   [[nodiscard]] Eigen::Vector2d front() const { return right->p - left->p; }
+  /// A side of it is too worn for labels (slot_rows.hpp).
+  [[nodiscard]] bool isFaint() const { return left->isFaint() || right->isFaint(); }
   /// m, between the side lines.
   [[nodiscard]] double width() const;
   /// m, of the corners: as seen, or as others have it.
@@ -41,6 +43,14 @@ struct SlotCandidate {
   /// Sets the corners; usual (m) is the depth where none was seen.
   void complete(double usual);
 };
+
+/// The point at shares of a slot's front (from its left) and of its depth.
+inline Eigen::Vector2d pointIn(const std::array<Eigen::Vector2d, 4>& corners, double across,
+                               double deep) {
+  const Eigen::Vector2d front = (1.0 - across) * corners[0] + across * corners[1];
+  const Eigen::Vector2d rear = (1.0 - across) * corners[3] + across * corners[2];
+  return (1.0 - deep) * front + deep * rear;
+}
 
 /// All pairs of marks that have a slot's size and contradict none: no side as plain as theirs
 /// between them (along the aisle: none at all), lines that meet them along the entrance within a

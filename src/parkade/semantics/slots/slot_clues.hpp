@@ -12,7 +12,6 @@
 namespace parkade {
 
 struct SlotCandidate;
-struct SlotMark;
 
 inline constexpr int kNumSlotClues = 22;
 
@@ -35,26 +34,8 @@ double slotLogOdds(const SlotClues& clues);
 /// Log-odds that one unit of other candidates' doubt (slot_ranking.hpp) takes from a candidate.
 double slotDoubtWeight();
 
-/// Measures the clues of candidates in one picture.
-class SlotClueFinder {
- public:
-  SlotClueFinder(const LabelProbe& probe, const BevViews& views) : probe_(probe), views_(views) {}
-
-  /// Sets the clues of all candidates of a picture.
-  void measure(std::vector<SlotCandidate>& candidates) const;
-
- private:
-  [[nodiscard]] SlotClues find(const SlotCandidate& c, double neighbours, double usual_width) const;
-  [[nodiscard]] LabelProbe::Shares wayInFront(const SlotCandidate& c, const Eigen::Vector2d& u,
-                                              const Eigen::Vector2d& ahead) const;
-  [[nodiscard]] double paintAcross(const SlotCandidate& c) const;
-  [[nodiscard]] double wheelStopInFront(const SlotCandidate& c) const;
-  [[nodiscard]] double pillarInside(const SlotCandidate& c) const;
-  [[nodiscard]] bool isPillarFoot(const Eigen::Vector2d& p) const;
-  [[nodiscard]] bool goesOnAsLaneLine(const SlotMark& mark) const;
-
-  const LabelProbe& probe_;
-  const BevViews& views_;
-};
+/// Sets the clues of all candidates of a picture.
+void measureSlotClues(const LabelProbe& probe, const BevViews& views,
+                      std::vector<SlotCandidate>& candidates);
 
 }  // namespace parkade

@@ -60,7 +60,7 @@ void addTrials(const std::vector<SlotCandidate>& candidates,
   };
   for (const SlotCandidate& c : candidates) add(c);
   for (const SlotCandidate& c : in_rows) {
-    if (c.left->isFaint() || c.right->isFaint()) add(c);
+    if (c.isFaint()) add(c);
   }
 }
 
@@ -88,7 +88,7 @@ std::vector<SlotObservation> extractSlots(const BevImage& bev, const BevLabels& 
     all.insert(all.end(), marks.begin(), marks.end());
     in_rows = pairSlotMarks(all, probe, options);
     for (const SlotCandidate* slot : likelySlots(in_rows, probe, views, options.min_confidence)) {
-      if (slot->left->isFaint() || slot->right->isFaint()) likely.push_back(slot);
+      if (slot->isFaint()) likely.push_back(slot);
     }
     likely = withoutOverlaps(std::move(likely));
   }

@@ -11,15 +11,14 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kMeet = 0.45;        // m: lines that end this near to each other meet
-constexpr double kMeetInPaint = 0.8;  // m: the same where labels say that their paint goes on
-constexpr double kMeetAcross = 0.8;   // m: the same at lines that pass and at the middles of bars
-constexpr double kLeastMet = 0.25;    // m of side line to see, where another line meets it
-constexpr double kLeastOpen = 0.35;   // the same without
-constexpr double kLongestBar = 0.9;   // m
-constexpr double kSteepest = 0.5;     // sine of the least angle between lines that meet
-constexpr double kFaint = -1.5;       // log-odds of a worn end of a line
-constexpr double kBeyond = 0.9;       // m in front of an entrance without its side going on
+constexpr double kMeet = 0.45;    // m: lines that end this near to each other meet
+constexpr double kMeetFar = 0.8;  // m: the same in paint, at lines that pass and at middles of bars
+constexpr double kLeastMet = 0.25;   // m of side line to see, where another line meets it
+constexpr double kLeastOpen = 0.35;  // the same without
+constexpr double kLongestBar = 0.9;  // m
+constexpr double kSteepest = 0.5;    // sine of the least angle between lines that meet
+constexpr double kFaint = -1.5;      // log-odds of a worn end of a line
+constexpr double kBeyond = 0.9;      // m in front of an entrance without its side going on
 
 struct Stroke {
   Vector2d begin;
@@ -161,8 +160,8 @@ class MarkFinder {
     const Vector2d between = other.begin - side.begin;
     const double s = (between.x() * other.along.y() - between.y() * other.along.x()) / sine;
     const double t = (between.x() * side.along.y() - between.y() * side.along.x()) / sine;
-    if (s < -kMeetAcross || s > side.length + kMeetAcross || t < -kMeetInPaint ||
-        t > other.length + kMeetInPaint) {
+    if (s < -kMeetFar || s > side.length + kMeetFar || t < -kMeetFar ||
+        t > other.length + kMeetFar) {
       return;
     }
     SlotMark mark;
@@ -218,7 +217,7 @@ class MarkFinder {
       if (met.side != mark.side) continue;
       const double beyond = (met.p - mark.p).dot(outward);
       // Another line meets it farther out: its own end is worn.
-      if (met.inward.dot(outward) < 0.0 && beyond >= kMeet && beyond < kMeetAcross) return;
+      if (met.inward.dot(outward) < 0.0 && beyond >= kMeet && beyond < kMeetFar) return;
       if ((met.p - mark.p).norm() >= kMeet) continue;
       // Where only a short bar meets the line, its end tells better where that is.
       const bool ends = met.inward.dot(outward) < 0.0 && met.sigma_along > mark.sigma_along;

@@ -23,9 +23,7 @@ double shareInside(const std::array<Vector2d, 4>& a, const std::array<Vector2d, 
     for (int j = 0; j < kSteps; ++j) {
       const double s = (i + 0.5) / kSteps;
       const double t = (j + 0.5) / kSteps;
-      const Vector2d p =
-          (1.0 - t) * ((1.0 - s) * a[0] + s * a[1]) + t * ((1.0 - s) * a[3] + s * a[2]);
-      if (contains(b, p)) ++inside;
+      if (contains(b, pointIn(a, s, t))) ++inside;
     }
   }
   return static_cast<double>(inside) / (kSteps * kSteps);
@@ -38,7 +36,7 @@ class SlotRanking {
       : candidates_(candidates), probe_(probe), views_(views), min_confidence_(min_confidence) {}
 
   std::vector<const SlotCandidate*> likely() {
-    SlotClueFinder(probe_, views_).measure(candidates_);
+    measureSlotClues(probe_, views_, candidates_);
     for (SlotCandidate& candidate : candidates_) candidate.score = slotLogOdds(candidate.clues);
     weighAgainstOthers();
     return choose();
