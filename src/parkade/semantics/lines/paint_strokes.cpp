@@ -135,6 +135,37 @@ bool isPlainStroke(const cv::Mat& marked, const std::vector<cv::Point>& pixels, 
   return static_cast<double>(thick) <= kMeeting * static_cast<double>(thickness.size());
 }
 
+// Paint that hangs together, some of it of a class that may be mistaken for slot line.
+struct DoubtedPiece {
+  std::vector<cv::Point> pixels;  // of the paint
+  int doubted = 0;                // of them of that class
+  double below = 0.0;             // how far slot line lies below that class, summed over those
+
+  void becomes(int label, cv::Mat& labels) const {
+    for (const cv::Point& p : pixels) labels.at<std::uint8_t>(p) = static_cast<std::uint8_t>(label);
+  }
+};
+
+// What hangs together in area; paint: its pixels that are paint.
+std::vector<DoubtedPiece> doubtedPieces(const cv::Mat& area, const cv::Mat& paint,
+                                        const cv::Mat& labels, int doubted,
+                                        const cv::Mat& slot_line) {
+  cv::Mat piece_of;
+  const int count = cv::connectedComponents(area, piece_of, 8, CV_32S);
+  std::vector<DoubtedPiece> pieces(static_cast<std::size_t>(count));
+  for (int v = 0; v < labels.rows; ++v) {
+    for (int u = 0; u < labels.cols; ++u) {
+      if (paint.at<std::uint8_t>(v, u) == 0) continue;
+      DoubtedPiece& piece = pieces[static_cast<std::size_t>(piece_of.at<int>(v, u))];
+      piece.pixels.emplace_back(u, v);
+      if (labels.at<std::uint8_t>(v, u) != doubted) continue;
+      ++piece.doubted;
+      piece.below += (255.0 - slot_line.at<std::uint8_t>(v, u)) / kSlotLinePerLogOdds;
+    }
+  }
+  return pieces;
+}
+
 }  // namespace
 
 void tellStrokesFromArrows(const cv::Mat& slot_line, double metres_per_px, cv::Mat& labels) {
@@ -151,42 +182,22 @@ void tellStrokesFromArrows(const cv::Mat& slot_line, double metres_per_px, cv::M
   const int reach = std::max(1, static_cast<int>(std::lround(0.5 * kGap / metres_per_px)));
   cv::Mat near;
   cv::dilate(marked, near, cv::Mat::ones(2 * reach + 1, 2 * reach + 1, CV_8UC1));
-  cv::Mat piece_of;
-  const int count = cv::connectedComponents(near, piece_of, 8, CV_32S);
-  std::vector<std::vector<cv::Point>> pieces(static_cast<std::size_t>(count));
-  std::vector<int> arrows(pieces.size(), 0);
-  std::vector<int> slots(pieces.size(), 0);
-  std::vector<double> below(pieces.size(), 0.0);  // how far slot line lies below arrow, summed
-  for (int v = 0; v < labels.rows; ++v) {
-    for (int u = 0; u < labels.cols; ++u) {
-      const auto i = static_cast<std::size_t>(piece_of.at<int>(v, u));
-      if (marked.at<std::uint8_t>(v, u) == 0) continue;
-      pieces[i].emplace_back(u, v);
-      if (labels.at<std::uint8_t>(v, u) == kSlot) {
-        ++slots[i];
-        continue;
-      }
-      ++arrows[i];
-      below[i] += (255.0 - slot_line.at<std::uint8_t>(v, u)) / kSlotLinePerLogOdds;
-    }
-  }
-  for (std::size_t i = 1; i < pieces.size(); ++i) {
-    if (arrows[i] < kLeast || below[i] > kDoubtful * arrows[i]) continue;
-    const cv::Size2f box = cv::minAreaRect(pieces[i]).size;
+  const std::vector<DoubtedPiece> pieces = doubtedPieces(near, marked, labels, kArrow, slot_line);
+  for (const DoubtedPiece& piece : pieces) {
+    if (piece.doubted < kLeast || piece.below > kDoubtful * piece.doubted) continue;
+    const cv::Size2f box = cv::minAreaRect(piece.pixels).size;
     const bool both_ways = std::min(box.width, box.height) * metres_per_px >= kBothWays;
-    const bool meets = slots[i] >= kShare * static_cast<double>(pieces[i].size());
-    if ((!both_ways && !meets) || !isPlainStroke(marked, pieces[i], metres_per_px)) continue;
-    for (const cv::Point& p : pieces[i]) {
-      std::uint8_t& label = labels.at<std::uint8_t>(p);
-      if (label == kArrow) label = kSlot;
-    }
+    const int slots = static_cast<int>(piece.pixels.size()) - piece.doubted;
+    const bool meets = slots >= kShare * static_cast<double>(piece.pixels.size());
+    if ((!both_ways && !meets) || !isPlainStroke(marked, piece.pixels, metres_per_px)) continue;
+    piece.becomes(kSlot, labels);
   }
 }
 
 void tellSlotsFromLanes(const cv::Mat& slot_line, double metres_per_px, cv::Mat& labels) {
   constexpr auto kLane = static_cast<int>(SemanticClass::kLaneLine);
   constexpr auto kSlot = static_cast<int>(SemanticClass::kSlotLine);
-  constexpr std::size_t kLeast = 8;   // px of lane line
+  constexpr int kLeast = 8;           // px of lane line
   constexpr int kTouch = 4;           // px of them beside a slot's line
   constexpr double kDoubtful = 4.0;   // log-odds, on average, where they touch
   constexpr double kDoubtfulT = 3.0;  // the same of what has a T's or an L's shape
@@ -195,35 +206,21 @@ void tellSlotsFromLanes(const cv::Mat& slot_line, double metres_per_px, cv::Mat&
   if (slot_line.empty()) return;
   const cv::Mat lane = labels == kLane;
   if (cv::countNonZero(lane) == 0) return;
-  cv::Mat piece_of;
-  const int count = cv::connectedComponents(lane, piece_of, 8, CV_32S);
   cv::Mat near;
   cv::dilate(labels == kSlot, near, cv::Mat::ones(5, 5, CV_8UC1));
-  struct Piece {
-    std::vector<cv::Point> pixels;
-    int touching = 0;
-    double below = 0.0;  // how far slot line lies below lane line, summed
-  };
-  std::vector<Piece> pieces(static_cast<std::size_t>(count));
-  for (int v = 0; v < labels.rows; ++v) {
-    for (int u = 0; u < labels.cols; ++u) {
-      if (lane.at<std::uint8_t>(v, u) == 0) continue;
-      Piece& piece = pieces[static_cast<std::size_t>(piece_of.at<int>(v, u))];
-      piece.pixels.emplace_back(u, v);
-      if (near.at<std::uint8_t>(v, u) != 0) ++piece.touching;
-      piece.below += (255.0 - slot_line.at<std::uint8_t>(v, u)) / kSlotLinePerLogOdds;
-    }
-  }
-  for (const Piece& piece : pieces) {
-    if (piece.pixels.size() < kLeast) continue;
-    const double below = piece.below / static_cast<double>(piece.pixels.size());
+  for (const DoubtedPiece& piece : doubtedPieces(lane, lane, labels, kLane, slot_line)) {
+    if (piece.doubted < kLeast) continue;
+    const double below = piece.below / piece.doubted;
     if (below > kDoubtful) continue;
     const cv::Size2f box = cv::minAreaRect(piece.pixels).size;
     const double narrow = std::min(box.width, box.height) * metres_per_px;
     const bool t_shaped = narrow > kBothWays && narrow < kWidest && below < kDoubtfulT &&
                           isPlainStroke(lane, piece.pixels, metres_per_px);
-    if (!t_shaped && piece.touching < kTouch) continue;
-    for (const cv::Point& p : piece.pixels) labels.at<std::uint8_t>(p) = kSlot;
+    const auto touching =
+        std::count_if(piece.pixels.begin(), piece.pixels.end(),
+                      [&near](const cv::Point& p) { return near.at<std::uint8_t>(p) != 0; });
+    if (!t_shaped && touching < kTouch) continue;
+    piece.becomes(kSlot, labels);
   }
 }
 

@@ -75,14 +75,20 @@ TEST(PaintStrokes, AHeadlessArrowIsSlotLines) {
   EXPECT_EQ(at(labels, 38, 88), SemanticClass::kArrow);
 }
 
+// Labels of which the network is sure, and those of a network without slot lines.
+void expectUnchanged(void (*tell)(const cv::Mat&, double, cv::Mat&), const cv::Mat& slot_line,
+                     const cv::Mat& before) {
+  cv::Mat labels = before.clone();
+  tell(slot_line, kScale, labels);
+  EXPECT_EQ(cv::countNonZero(labels != before), 0);
+  tell(cv::Mat(), kScale, labels);
+  EXPECT_EQ(cv::countNonZero(labels != before), 0);
+}
+
 TEST(PaintStrokes, WhatTheNetworkIsSureOfStaysAnArrow) {
   cv::Mat slot_line;
   const cv::Mat before = strokesAndArrow(6.0, slot_line);
-  cv::Mat labels = before.clone();
-  tellStrokesFromArrows(slot_line, kScale, labels);
-  EXPECT_EQ(cv::countNonZero(labels != before), 0);
-  tellStrokesFromArrows(cv::Mat(), kScale, labels);  // a network without slot lines
-  EXPECT_EQ(cv::countNonZero(labels != before), 0);
+  expectUnchanged(tellStrokesFromArrows, slot_line, before);
 }
 
 // A slot's corner whose side is labelled lane line, and a lane line by itself.
@@ -118,11 +124,7 @@ TEST(PaintStrokes, LaneLinesMakeNoT) {
 TEST(PaintStrokes, LaneLinesOfWhichTheNetworkIsSureStay) {
   cv::Mat slot_line;
   const cv::Mat before = cornerAndLane(5.0, slot_line);
-  cv::Mat labels = before.clone();
-  tellSlotsFromLanes(slot_line, kScale, labels);
-  EXPECT_EQ(cv::countNonZero(labels != before), 0);
-  tellSlotsFromLanes(cv::Mat(), kScale, labels);  // a network without slot lines
-  EXPECT_EQ(cv::countNonZero(labels != before), 0);
+  expectUnchanged(tellSlotsFromLanes, slot_line, before);
 }
 
 }  // namespace
