@@ -75,6 +75,7 @@ def write_class_map(name, path):
     ]
     if name in METRES_PER_PX:
         lines.append(f"  metres_per_px: {METRES_PER_PX[name]}")
+        lines.append("unknown_is_unseen: true")
     lines.append("classes: [" + ", ".join(NETWORKS[name]["classes"]) + "]")
     with open(path + ".yaml", "w") as file:
         file.write("\n".join(lines) + "\n")

@@ -60,6 +60,16 @@ MarkingShape arrow(const ArrowStyle& style, bool straight, bool left, bool right
   return {meaning, outlines};
 }
 
+MarkingShape arms(const ArrowStyle& style) {
+  std::vector<Outline> outlines;
+  addArm(style, 0.0, 1.0, outlines);
+  addArm(style, 0.0, -1.0, outlines);
+  for (Outline& outline : outlines) {
+    for (Eigen::Vector2d& p : outline) p = {p.y(), -p.x()};
+  }
+  return {"", outlines};
+}
+
 MarkingShape text(const std::string& letters, double weight) {
   constexpr double kScale = 6.0;  // Hershey capitals are 21 px high at scale 1
   constexpr double kHeight = 21.0 * kScale;
@@ -90,6 +100,8 @@ std::vector<MarkingShape> arrowShapes() {
   for (const double width : {0.06, 0.11, 0.18}) {
     shapes.push_back({"", {box(0.0, -0.5 * width, 1.0, 0.5 * width)}});
   }
+  // Both arms of an arrow whose shaft is worn or hidden.
+  for (const ArrowStyle& style : kStyles) shapes.push_back(arms(style));
   return shapes;
 }
 

@@ -9,7 +9,8 @@
 namespace parkade {
 
 /// Arrows of all meanings (straight, left, right and their unions, named as straight_left), in
-/// several proportions, and plain bars without a meaning: what fits those better is no arrow. x
+/// several proportions, and without a meaning plain bars, and two heads back to back, as an arrow
+/// leaves them whose shaft is worn: what fits those better is no arrow. x
 /// points where a driver goes on to; y = 0 is the middle of the shaft.
 std::vector<MarkingShape> arrowShapes();
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/semantics/markings/marking_objects.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +9,7 @@
 #include <optional>
 
 #include "parkade/geometry/se2.hpp"
+#include "parkade/semantics/markings/arrow_fitting.hpp"
 #include "parkade/semantics/markings/marking_arrows.hpp"
 #include "parkade/semantics/markings/marking_pieces.hpp"
 #include "parkade/semantics/standing/standing_foot.hpp"
@@ -89,30 +89,13 @@ bool asBox(const MarkingPiece& piece, double pixel, ObjectObservation& object) {
 }
 
 // sigma_along: m, what the shape leaves open along the heading.
-bool asArrow(const MarkingPiece& piece, double pixel, const std::vector<MarkingShape>& shapes,
+void asArrow(const FittedArrow& arrow, double pixel, const std::vector<MarkingShape>& shapes,
              const MarkingOptions& options, ObjectObservation& object, double& sigma_along) {
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const Eigen::Vector2d& p : piece.points) mean += p;
-  mean /= static_cast<double>(piece.points.size());
-  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
-  for (const Eigen::Vector2d& p : piece.points) spread += (p - mean) * (p - mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(spread);
-  const Eigen::Vector2d axis = eigen.eigenvectors().col(1);
-  ShapeSearch search;
-  search.heading = std::atan2(axis.y(), axis.x());
-  search.turn = M_PI;
-  // Heads to one side turn the main axis away from the shaft; a T may be as wide as it is long.
-  const double ratio = eigen.eigenvalues()[0] / std::max(eigen.eigenvalues()[1], 1e-9);
-  search.half_range = ratio > 0.4 ? M_PI_2 : (ratio > 0.05 ? 0.8 : 0.25);
-  search.step = M_PI / 45.0;
-  search.min_length = options.min_arrow_m;
-  search.max_length = 8.0;
-  const ShapeFit fit = fitShape(piece.points, pixel, shapes, search);
-  if (fit.shape < 0 || fit.overlap < options.min_overlap) return false;
+  const MarkingPiece& piece = arrow.paint;
+  const ShapeFit& fit = arrow.fit;
   const Eigen::Vector2d ahead(std::cos(fit.heading), std::sin(fit.heading));
   const Eigen::Vector2d left(-ahead.y(), ahead.x());
   const MarkingShape& shape = shapes[static_cast<std::size_t>(fit.shape)];
-  if (shape.meaning().empty()) return false;  // a plain bar: the dash of a line
   // Its ends from the paint, where that ends near the shape's: proportions differ.
   double back = std::numeric_limits<double>::max();
   double front = -back;
@@ -135,7 +118,6 @@ bool asArrow(const MarkingPiece& piece, double pixel, const std::vector<MarkingS
   sigma_along = 0.08 * fit.length * (1.0 - fit.overlap);
   // Half covered by its shape is half worn, or something else: told less surely.
   object.confidence = piece.confidence * std::min(1.0, fit.overlap / 0.7);
-  return true;
 }
 
 bool asLimit(const MarkingPiece& piece, double pixel, const std::vector<MarkingShape>& shapes,
@@ -214,7 +196,20 @@ std::vector<ObjectObservation> MarkingExtractor::extract(const BevLabels& labels
                                                          double attitude_sigma) const {
   const double pixel = labels.geometry.metres_per_px;
   std::vector<ObjectObservation> objects;
+  const auto add = [&](ObjectObservation& object, double sigma_along,
+                       const Eigen::Vector2d& along) {
+    object.covariance = groundCovariance(views, labels.geometry, object.position.head<2>(),
+                                         options_.sigma_px * pixel, attitude_sigma);
+    object.covariance.topLeftCorner<2, 2>() +=
+        sigma_along * sigma_along * along * along.transpose();
+    objects.push_back(std::move(object));
+  };
+  std::vector<MarkingPiece> arrows;
   for (MarkingPiece& piece : findMarkings(labels, options_.min_confidence, options_.min_pixels)) {
+    if (piece.semantic_class == SemanticClass::kArrow) {
+      arrows.push_back(std::move(piece));
+      continue;
+    }
     constexpr double kStopDepth = 0.16;  // m
     if (piece.semantic_class == SemanticClass::kWheelStop) {
       piece = footOf(piece, views, labels.geometry, kStopDepth);
@@ -222,28 +217,26 @@ std::vector<ObjectObservation> MarkingExtractor::extract(const BevLabels& labels
     if (piece.cut) continue;
     ObjectObservation object;
     object.semantic_class = piece.semantic_class;
-    bool found = false;
-    double sigma_along = 0.0;
-    if (piece.semantic_class == SemanticClass::kArrow) {
-      found = asArrow(piece, pixel, arrows_, options_, object, sigma_along);
-    } else if (piece.semantic_class == SemanticClass::kSpeedLimitPaint) {
-      found = asLimit(piece, pixel, limits_, options_, object);
-    } else {
-      found = asBox(piece, pixel, object);
-    }
+    const bool found = piece.semantic_class == SemanticClass::kSpeedLimitPaint
+                           ? asLimit(piece, pixel, limits_, options_, object)
+                           : asBox(piece, pixel, object);
     if (!found) continue;
-    object.covariance = groundCovariance(views, labels.geometry, object.position.head<2>(),
-                                         options_.sigma_px * pixel, attitude_sigma);
-    Eigen::Vector2d along(std::cos(object.heading), std::sin(object.heading));
-    if (piece.may_go_on) {
-      constexpr double kNextBar = 0.4;  // m, by which one more would move the middle
-      sigma_along = kNextBar;
-      along = (object.outline[1] - object.outline[0]).normalized();
-      object.confidence *= 0.5;  // others' outlines first
+    if (!piece.may_go_on) {
+      add(object, 0.0, Eigen::Vector2d::UnitX());
+      continue;
     }
-    object.covariance.topLeftCorner<2, 2>() +=
-        sigma_along * sigma_along * along * along.transpose();
-    objects.push_back(std::move(object));
+    constexpr double kNextBar = 0.4;  // m, by which one more would move the middle
+    object.confidence *= 0.5;         // others' outlines first
+    add(object, kNextBar, (object.outline[1] - object.outline[0]).normalized());
+  }
+  const ArrowLimits limits{options_.min_overlap, options_.min_arrow_m};
+  for (const FittedArrow& arrow : fitArrows(std::move(arrows), pixel, arrows_, limits)) {
+    if (arrow.paint.cut) continue;
+    ObjectObservation object;
+    object.semantic_class = SemanticClass::kArrow;
+    double sigma_along = 0.0;
+    asArrow(arrow, pixel, arrows_, options_, object, sigma_along);
+    add(object, sigma_along, {std::cos(object.heading), std::sin(object.heading)});
   }
   return objects;
 }

@@ -134,6 +134,52 @@ TEST(MarkingObjects, WornArrowsAreStillRead) {
   }
 }
 
+TEST(MarkingObjects, ArrowsPartedByWearAreOne) {
+  const MarkingExtractor extractor({});
+  for (const char* meaning : {"straight", "left", "straight_right", "left_right"}) {
+    Floor floor;
+    const SE2 place(-0.5, {4.5, 1.0});
+    for (const Polygon& p : arrow(meaning, 2.4)) floor.paint(SemanticClass::kArrow, p, place);
+    // Half a metre of the shaft is gone.
+    floor.paint(SemanticClass::kFloor, box(-0.5, -0.3, 0.0, 0.3), place);
+    const auto objects = extractor.extract(floor.labels, floor.views, kAttitudeSigma);
+    ASSERT_EQ(objects.size(), 1U) << meaning;
+    EXPECT_EQ(objects[0].text, meaning);
+    EXPECT_LT(std::abs(wrapAngle(objects[0].heading + 0.5)), 0.06) << meaning;
+    EXPECT_LT((objects[0].position.head<2>() - place.translation()).norm(), 0.12) << meaning;
+  }
+}
+
+TEST(MarkingObjects, ArrowsThatNearlyTouchAreTwo) {
+  const MarkingExtractor extractor({});
+  Floor floor;
+  for (const double y : {-1.25, 1.25}) {
+    const SE2 place(M_PI_2, {4.5, y});
+    for (const Polygon& p : arrow("straight", 2.4)) floor.paint(SemanticClass::kArrow, p, place);
+  }
+  const auto objects = extractor.extract(floor.labels, floor.views, kAttitudeSigma);
+  ASSERT_EQ(objects.size(), 2U);
+  for (const ObjectObservation& o : objects) {
+    EXPECT_EQ(o.text, "straight");
+    EXPECT_NEAR(std::abs(o.position.y()), 1.25, 0.06);
+  }
+}
+
+TEST(MarkingObjects, HeadsWithoutAShaftAreNoArrow) {
+  const MarkingExtractor extractor({});
+  Floor floor;
+  const SE2 place(0.3, {4.5, 0.0});
+  for (const Polygon& p : arrow("left_right", 2.8)) floor.paint(SemanticClass::kArrow, p, place);
+  floor.paint(SemanticClass::kFloor, box(-1.5, -0.3, 0.78, 0.3), place);
+  EXPECT_TRUE(extractor.extract(floor.labels, floor.views, kAttitudeSigma).empty());
+  // Nor are two bars in a row, dashes of a line.
+  Floor dashes;
+  for (const double x : {-1.3, 0.2}) {
+    dashes.paint(SemanticClass::kArrow, box(x, -0.08, x + 1.1, 0.08), place);
+  }
+  EXPECT_TRUE(extractor.extract(dashes.labels, dashes.views, kAttitudeSigma).empty());
+}
+
 TEST(MarkingObjects, WhatIsCutOffIsLeftOut) {
   const MarkingExtractor extractor({});
   Floor border;

@@ -15,6 +15,7 @@ struct ClassGap {
   SemanticClass semantic_class;
   double gap;
 };
+constexpr int kLeastArrowPart = 8;  // px
 constexpr std::array<ClassGap, 7> kGaps = {{{SemanticClass::kArrow, 0.28},
                                             {SemanticClass::kSpeedLimitPaint, 0.60},
                                             {SemanticClass::kStopLine, 0.36},
@@ -157,7 +158,10 @@ std::vector<MarkingPiece> findMarkings(const BevLabels& labels, int min_confiden
       near_hidden = hiddenMask(
           labels.labels, static_cast<int>(std::lround(kBarGap / labels.geometry.metres_per_px)));
     }
-    splitClass(labels, hidden, near_hidden, entry, min_confidence, min_pixels, pieces);
+    const int least = entry.semantic_class == SemanticClass::kArrow
+                          ? std::min(kLeastArrowPart, min_pixels)
+                          : min_pixels;
+    splitClass(labels, hidden, near_hidden, entry, min_confidence, least, pieces);
   }
   return pieces;
 }

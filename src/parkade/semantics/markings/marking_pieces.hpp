@@ -23,8 +23,9 @@ struct MarkingPiece {
 /// Whether a label hides the floor or tells nothing of it.
 bool hidesGround(SemanticClass semantic_class);
 
-/// The paint of the classes that are objects (not lines), in pieces of at least min_pixels. Worn
-/// paint is joined over gaps that depend on the class; a crossing's bars are one piece.
+/// The paint of the classes that are objects (not lines), in pieces of at least min_pixels (8
+/// for arrows, whose parts arrow_fitting.hpp joins). Worn paint is joined over gaps that depend on
+/// the class; a crossing's bars are one piece.
 std::vector<MarkingPiece> findMarkings(const BevLabels& labels, int min_confidence, int min_pixels);
 
 }  // namespace parkade

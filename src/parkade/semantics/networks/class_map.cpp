@@ -42,7 +42,7 @@ SemanticClass classOf(const YamlNode& node) {
 }
 
 ClassMap parseClassMap(const YamlNode& root, const std::string& path) {
-  root.allowOnly({"network", "input", "classes"});
+  root.allowOnly({"network", "input", "classes", "unknown_is_unseen"});
   ClassMap map;
   map.path = path;
   map.network =
@@ -70,6 +70,16 @@ ClassMap parseClassMap(const YamlNode& root, const std::string& path) {
     classes.fail("expected a list of at least two class names, one per output channel");
   }
   for (std::size_t i = 0; i < classes.size(); ++i) map.classes.push_back(classOf(classes.at(i)));
+  if (root.has("unknown_is_unseen")) {
+    const YamlNode unseen = root.at("unknown_is_unseen");
+    map.unknown_is_unseen = unseen.asBool();
+    const bool tells = std::any_of(map.classes.begin(), map.classes.end(),
+                                   [](SemanticClass c) { return c != SemanticClass::kUnknown; });
+    if (map.unknown_is_unseen && map.metres_per_px <= 0.0) {
+      unseen.fail("only for networks of bird's-eye pictures (input: metres_per_px)");
+    }
+    if (map.unknown_is_unseen && !tells) unseen.fail("there is no class but unknown");
+  }
   return map;
 }
 

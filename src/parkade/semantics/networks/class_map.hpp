@@ -23,6 +23,9 @@ struct ClassMap {
   std::array<double, 3> scale = {1.0, 1.0, 1.0};  ///< then multiplied with
   double metres_per_px = 0.0;  ///< of a network for bird's-eye pictures; 0: for camera views
   std::vector<SemanticClass> classes;  ///< of the output's channels; one may come several times
+  /// Of a bird's-eye network: its unknown stands for what the picture does not show, and is told
+  /// nowhere else.
+  bool unknown_is_unseen = false;
 };
 
 /// Fails with file, line and key on a missing file, an unknown key or class, or a bad value.

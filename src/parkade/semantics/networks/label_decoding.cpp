@@ -99,10 +99,19 @@ class RowDecoder {
 }  // namespace
 
 void decodeLogits(const cv::Mat& logits, const std::vector<SemanticClass>& classes,
-                  const cv::Size& size, cv::Mat& labels, cv::Mat& confidence, cv::Mat& slot_line) {
+                  const cv::Size& size, cv::Mat& labels, cv::Mat& confidence, cv::Mat& slot_line,
+                  bool no_unknown) {
   PARKADE_CHECK(logits.dims == 4 && logits.size[0] == 1 && logits.type() == CV_32F,
                 "logits of {} dimensions", logits.dims);
   const std::size_t count = classes.size();
+  std::vector<int> channels;
+  std::vector<SemanticClass> meanings;
+  for (std::size_t c = 0; c < count; ++c) {
+    if (no_unknown && classes[c] == SemanticClass::kUnknown) continue;
+    channels.push_back(static_cast<int>(c));
+    meanings.push_back(classes[c]);
+  }
+  PARKADE_CHECK(!channels.empty(), "no class but unknown");
   const int height = logits.size[2];
   const int width = logits.size[3];
   labels.create(size, CV_8UC1);
@@ -119,16 +128,16 @@ void decodeLogits(const cv::Mat& logits, const std::vector<SemanticClass>& class
       blocks ? size == cv::Size(2 * width, 2 * height) : logits.size[1] == static_cast<int>(count),
       "{} channels of {} x {} for {} classes and {} x {} px", logits.size[1], width, height, count,
       size.width, size.height);
-  std::vector<const float*> rows(count);
+  std::vector<const float*> rows(channels.size());
   if (blocks) {
     RowDecoder decoder(width);
     for (int v = 0; v < height; ++v) {
       for (int part = 0; part < 4; ++part) {
-        for (std::size_t c = 0; c < count; ++c) {
-          rows[c] = logits.ptr<float>(0, static_cast<int>(4 * c) + part) +
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+          rows[i] = logits.ptr<float>(0, 4 * channels[i] + part) +
                     static_cast<std::ptrdiff_t>(v) * width;
         }
-        decoder.decode(rows, classes);
+        decoder.decode(rows, meanings);
         const int row = 2 * v + part / 2;
         std::uint8_t* const lines = evidence(row);
         decoder.write(labels.ptr<std::uint8_t>(row) + part % 2,
@@ -138,17 +147,17 @@ void decodeLogits(const cv::Mat& logits, const std::vector<SemanticClass>& class
     }
     return;
   }
-  std::vector<cv::Mat> planes(count);
-  for (std::size_t c = 0; c < count; ++c) {
+  std::vector<cv::Mat> planes(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
     const cv::Mat plane(height, width, CV_32F,
-                        const_cast<float*>(logits.ptr<float>(0, static_cast<int>(c))));
-    planes[c] = plane;
-    if (plane.size() != size) cv::resize(plane, planes[c], size, 0, 0, cv::INTER_LINEAR);
+                        const_cast<float*>(logits.ptr<float>(0, channels[i])));
+    planes[i] = plane;
+    if (plane.size() != size) cv::resize(plane, planes[i], size, 0, 0, cv::INTER_LINEAR);
   }
   RowDecoder decoder(size.width);
   for (int v = 0; v < size.height; ++v) {
-    for (std::size_t c = 0; c < count; ++c) rows[c] = planes[c].ptr<float>(v);
-    decoder.decode(rows, classes);
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = planes[i].ptr<float>(v);
+    decoder.decode(rows, meanings);
     decoder.write(labels.ptr<std::uint8_t>(v), confidence.ptr<std::uint8_t>(v), evidence(v), 1);
   }
 }

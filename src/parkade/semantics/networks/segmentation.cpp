@@ -84,7 +84,8 @@ Status SegmentationNetwork::Impl::run(const cv::Mat& image, cv::Mat& labels, cv:
   if (image.channels() == 1) cv::cvtColor(image, bgr, cv::COLOR_GRAY2BGR);
   const Status status = forward(bgr);
   if (!status) return status;
-  decodeLogits(logits, map.classes, bgr.size(), labels, confidence, slot_line);
+  decodeLogits(logits, map.classes, bgr.size(), labels, confidence, slot_line,
+               map.unknown_is_unseen);
   return {};
 }
 

@@ -215,6 +215,31 @@ TEST(LabelDecoding, EvidenceOfSlotLinesIsWhatTheyLackToTheLikeliest) {
   for (int i = 0; i < 4; ++i) EXPECT_EQ(slot_line.data[i], expected[static_cast<std::size_t>(i)]);
 }
 
+TEST(LabelDecoding, UnknownMayBeLeftOut) {
+  const std::vector<SemanticClass> classes{SemanticClass::kUnknown, SemanticClass::kFloor,
+                                           SemanticClass::kWall};
+  const std::array<float, 3> values{5.0F, 1.0F, 2.0F};
+  // A channel per class, and four for the pixels of a block.
+  for (const int per_class : {1, 4}) {
+    const std::array<int, 4> shape{1, 3 * per_class, 1, 1};
+    cv::Mat logits(4, shape.data(), CV_32F);
+    for (int c = 0; c < 3 * per_class; ++c) {
+      *logits.ptr<float>(0, c) = values[static_cast<std::size_t>(c / per_class)];
+    }
+    const cv::Size size = per_class == 1 ? cv::Size(1, 1) : cv::Size(2, 2);
+    cv::Mat labels;
+    cv::Mat confidence;
+    cv::Mat slot_line;
+    decodeLogits(logits, classes, size, labels, confidence, slot_line);
+    EXPECT_EQ(labels.data[0], static_cast<int>(SemanticClass::kUnknown));
+    decodeLogits(logits, classes, size, labels, confidence, slot_line, true);
+    for (std::size_t i = 0; i < labels.total(); ++i) {
+      EXPECT_EQ(labels.data[i], static_cast<int>(SemanticClass::kWall));
+      EXPECT_NEAR(confidence.data[i], 255.0 / (1.0 + std::exp(-1.0)), 1.1);
+    }
+  }
+}
+
 TEST(FindModel, NamesThePlacesItLookedAt) {
   const Result<std::string> path = findModel("no_such_network");
   ASSERT_FALSE(path);
