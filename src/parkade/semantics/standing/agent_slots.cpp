@@ -35,7 +35,7 @@ bool isWithin(const SlotObservation& slot, const Vector2d& place, double margin)
 
 // The slot in whose middle a point lies.
 std::optional<std::size_t> slotOf(const Vector2d& p, const std::vector<SlotObservation>& slots) {
-  constexpr double kMargin = 0.25;  // of the width: a car's flank may seem to lie beyond its slot
+  constexpr double kMargin = 0.15;  // of the width: a car's flank may seem to lie beyond its slot
   for (std::size_t i = 0; i < slots.size(); ++i) {
     if (isWithin(slots[i], placeIn(slots[i], p), kMargin)) return i;
   }

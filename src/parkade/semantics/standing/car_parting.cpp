@@ -90,27 +90,59 @@ bool areTooMany(const GroundBox& box, std::optional<double> row) {
   return box.size[across] >= kWidest;
 }
 
+// How far the points from begin to before end reach along a direction, m.
+double extentAlong(const Points& points, const Eigen::Vector2d& direction, std::size_t begin,
+                   std::size_t end) {
+  double low = std::numeric_limits<double>::max();
+  double high = -low;
+  for (std::size_t i = begin; i < end; ++i) {
+    low = std::min(low, direction.dot(points[i]));
+    high = std::max(high, direction.dot(points[i]));
+  }
+  return high - low;
+}
+
+// By how much two parts of an edge are not as wide as cars in a row are, m. Of the nearer one all is
+// seen; the one beyond it may be hidden in part.
+double widthMisfit(const Points& floor, std::size_t at, const Eigen::Vector2d& viewer, double row) {
+  constexpr double kWidth = 1.85;
+  constexpr double kVaries = 0.15;
+  constexpr double kFarther = 0.1;
+  const Eigen::Vector2d across(-std::sin(row), std::cos(row));
+  const auto off = [&](std::size_t begin, std::size_t end) {
+    return std::max(0.0, std::abs(extentAlong(floor, across, begin, end) - kWidth) - kVaries);
+  };
+  const double first = off(0, at);
+  const double second = off(at, floor.size());
+  const bool first_is_near =
+      (floor.front() - viewer).squaredNorm() < (floor.back() - viewer).squaredNorm();
+  return first_is_near ? std::min(first, second + kFarther) : std::min(second, first + kFarther);
+}
+
 // Where points on the floor that are too many for one car part best into two; 0 where they are not.
 std::size_t findSizeLimit(const Points& floor, const Eigen::Vector2d& viewer,
                           std::optional<double> row) {
-  constexpr double kStep = 0.3;   // m between the places that are tried
-  constexpr double kLeast = 1.0;  // m of each car
+  constexpr double kStep = 0.15;  // m between the places that are tried
+  constexpr double kMisfit = 0.3;  // of a width, in mean distances of points from faces
+  // m of each car; in a row the far one may show no more than a corner.
+  const double least_part = row ? 0.4 : 1.0;
   double whole = 0.0;
   if (!areTooMany(fitFaces(floor, viewer, &whole, row), row)) return 0;
   std::size_t best = 0;
-  double least = whole * static_cast<double>(floor.size());
+  const auto count = static_cast<double>(floor.size());
+  double least = row ? std::numeric_limits<double>::max() : whole * count;
   Eigen::Vector2d last = floor.front();
   for (std::size_t i = 1; i + 1 < floor.size(); ++i) {
     if ((floor[i] - last).norm() < kStep) continue;
     last = floor[i];
-    if (reachOf(floor, 0, i) < kLeast || reachOf(floor, i, floor.size()) < kLeast) continue;
+    if (reachOf(floor, 0, i) < least_part || reachOf(floor, i, floor.size()) < least_part) continue;
     const auto middle = floor.begin() + static_cast<std::ptrdiff_t>(i);
     double first = 0.0;
     double second = 0.0;
     fitFaces(Points(floor.begin(), middle), viewer, &first, row);
     fitFaces(Points(middle, floor.end()), viewer, &second, row);
-    const double both =
-        first * static_cast<double>(i) + second * static_cast<double>(floor.size() - i);
+    double both = first * static_cast<double>(i) + second * (count - static_cast<double>(i));
+    if (row) both += kMisfit * count * widthMisfit(floor, i, viewer, *row);
     if (both >= least) continue;
     least = both;
     best = i;

@@ -36,6 +36,24 @@ TEST(CarParting, AWallOfOneFaceStaysOne) {
   EXPECT_EQ(parted(swept).size(), 1U);
 }
 
+TEST(CarParting, InARowTheNearerCarIsAsWideAsCarsAre) {
+  // Of the farther one no more than a corner is seen, and its front lies as far in.
+  Points swept;
+  addFace({4.0, 3.0}, {5.85, 3.0}, swept);
+  const std::size_t first = swept.size();
+  addFace({5.9, 3.02}, {6.9, 3.02}, swept);
+  SlotObservation slot;
+  slot.shape = SlotShape::kPerpendicular;
+  slot.corners = {Eigen::Vector2d(1.1, 2.5), Eigen::Vector2d(3.6, 2.5), Eigen::Vector2d(3.6, 7.5),
+                  Eigen::Vector2d(1.1, 7.5)};
+  constexpr double kNotch = 0.14;
+  const std::vector<CarEdge> cars =
+      partCars(swept, {3.0, 0.0}, kNotch, {slot}, [](const Points& points) { return points; });
+  ASSERT_EQ(cars.size(), 2U);
+  EXPECT_NEAR(static_cast<double>(cars[0].swept.size()), static_cast<double>(first),
+              0.2 * static_cast<double>(first));
+}
+
 TEST(CarParting, ACarsFrontAndFlankStayTogether) {
   Points swept;
   addFace({0.0, 3.0}, {1.8, 3.0}, swept);
