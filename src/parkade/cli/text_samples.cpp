@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <opencv2/core.hpp>
 
 #include "parkade/cli/zone_text_truth.hpp"
@@ -86,22 +87,60 @@ cv::Mat shakenLabels(const cv::Mat& labels, Random& random) {
   return out;
 }
 
+/// Letters of a text that a quadrilateral shows; nothing where a letter is cut, or hidden.
+std::optional<std::string> lettersWithin(const TrueZoneText& text,
+                                         const std::array<Eigen::Vector2d, 4>& corners) {
+  constexpr double kWhole = 0.75;
+  constexpr double kGone = 0.2;
+  const auto count = static_cast<double>(text.text.size());
+  std::string shown;
+  for (std::size_t i = 0; i < text.text.size(); ++i) {
+    const double share =
+        shareWithin(text, corners, static_cast<double>(i) / count, (static_cast<double>(i) + 1.0) / count);
+    if (share > kGone && share < kWhole) return std::nullopt;
+    if (share >= kWhole) shown += text.text[i];
+  }
+  if (!shown.empty() && text.in_sight < kReadable) return std::nullopt;
+  return shown;
+}
+
+/// What a face shows: where the edge between two of a pillar was missed, both texts, or one and an
+/// end of the other. Nothing where it cannot be told.
+struct ShownText {
+  std::string text;
+  double distance = 0.0;  ///< m, of the nearest; 0: no text
+};
+
+std::optional<ShownText> shownBy(const ZoneMarkerFace& face,
+                                 const std::vector<TrueZoneText>& texts) {
+  std::vector<const TrueZoneText*> inside;
+  for (const TrueZoneText& text : texts) {
+    if (text.in_sight * shareWithin(text, face.corners) > kNone) inside.push_back(&text);
+  }
+  std::sort(inside.begin(), inside.end(),
+            [](const auto* a, const auto* b) { return a->middle.x() < b->middle.x(); });
+  ShownText shown;
+  bool whole = inside.empty();
+  for (const TrueZoneText* text : inside) {
+    const std::optional<std::string> letters = lettersWithin(*text, face.corners);
+    if (!letters) return std::nullopt;
+    shown.text += *letters;
+    whole = whole || *letters == text->text;
+    if (shown.distance == 0.0 || text->distance < shown.distance) shown.distance = text->distance;
+  }
+  // A part alone is neither the text nor none.
+  if (!whole) return std::nullopt;
+  return shown;
+}
+
 // elsewhere_none: where no text of these is, there is none at all.
 void addFaces(const std::vector<ZoneMarkerSight>& sights, const std::vector<TrueZoneText>& texts,
               const char* kind, Strip& strip, bool elsewhere_none) {
   for (const ZoneMarkerSight& sight : sights) {
     for (const ZoneMarkerFace& face : sight.faces) {
-      const TrueZoneText* truth = textWithin(texts, face.corners);
-      const bool readable = truth != nullptr && truth->in_sight >= kReadable &&
-                            shareWithin(*truth, face.corners) >= kReadable;
-      // A part of a text is neither the text nor none.
-      const bool part =
-          !readable && std::any_of(texts.begin(), texts.end(), [&](const TrueZoneText& text) {
-            return text.in_sight * shareWithin(text, face.corners) > kNone;
-          });
-      if (part || (truth == nullptr && !elsewhere_none)) continue;
-      strip.add(face.patch, readable ? truth->text : "", face.height_px, face.slant,
-                readable ? truth->distance : 0.0, kind);
+      const std::optional<ShownText> shown = shownBy(face, texts);
+      if (!shown || (textWithin(texts, face.corners) == nullptr && !elsewhere_none)) continue;
+      strip.add(face.patch, shown->text, face.height_px, face.slant, shown->distance, kind);
     }
   }
 }

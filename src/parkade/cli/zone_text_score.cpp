@@ -19,6 +19,7 @@
 #include "parkade/semantics/texts/zone_marker_views.hpp"
 #include "parkade/semantics/texts/zone_text_reader.hpp"
 #include "parkade/types/level_frame.hpp"
+#include "parkade/types/text_evidence.hpp"
 
 namespace parkade::cli {
 namespace {
@@ -120,8 +121,12 @@ class ZoneTextScore : public SampleScore {
     for (const ZoneMarkerSight& sight : sights) {
       Result<std::vector<ReadFace>> faces = readFaces(sight, reader_, kZoneLetters);
       if (!faces) return faces.error();
+      // A pillar's faces bear the same text: what is told is what all that is read of it says.
+      TextEvidence evidence;
+      for (const ReadFace& read : *faces) evidence.add(read.readings);
+      const TextReading told = evidence.best();
       for (const ReadFace& read : *faces) {
-        reads.push_back({read.face, textWithin(texts, read.face->corners), read.readings.front()});
+        reads.push_back({read.face, textWithin(texts, read.face->corners), told});
       }
     }
     count(texts, reads);

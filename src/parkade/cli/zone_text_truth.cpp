@@ -8,9 +8,10 @@
 namespace parkade::cli {
 namespace {
 
-constexpr int kAcross = 9;
+constexpr int kAcross = 12;
 constexpr int kUp = 5;
 constexpr double kPlaces = kAcross * kUp;
+const Eigen::Vector2d kNowhere = Eigen::Vector2d::Constant(-1e6);
 
 // Share of a sign's area that the labels show as its class; and where it is in the picture.
 double shareInSight(const sim::Sign& sign, const SE3& T_cam_world, const Camera& camera,
@@ -22,7 +23,10 @@ double shareInSight(const sim::Sign& sign, const SE3& T_cam_world, const Camera&
       const Eigen::Vector3d p_sign(((i + 0.5) / kAcross - 0.5) * share * sign.width,
                                    ((j + 0.5) / kUp - 0.5) * share * sign.height, 0.0);
       Eigen::Vector2d pixel;
-      if (!camera.project(T_cam_world * (sign.T_world_sign * p_sign), pixel)) continue;
+      if (!camera.project(T_cam_world * (sign.T_world_sign * p_sign), pixel)) {
+        places.push_back(kNowhere);
+        continue;
+      }
       places.push_back(pixel);
       if (!camera.inImage(pixel, 1.0)) continue;
       const auto label = labels.at<std::uint8_t>(static_cast<int>(std::lround(pixel.y())),
@@ -94,11 +98,19 @@ const TrueZoneText* textWithin(const std::vector<TrueZoneText>& texts,
   return best;
 }
 
-double shareWithin(const TrueZoneText& text, const std::array<Eigen::Vector2d, 4>& corners) {
-  return static_cast<double>(std::count_if(
-             text.places.begin(), text.places.end(),
-             [&](const Eigen::Vector2d& place) { return isInside(place, corners); })) /
-         kPlaces;
+double shareWithin(const TrueZoneText& text, const std::array<Eigen::Vector2d, 4>& corners,
+                   double from, double to) {
+  int all = 0;
+  int within = 0;
+  for (int i = 0; i < kAcross; ++i) {
+    const double at = (i + 0.5) / kAcross;
+    if (at < from || at > to) continue;
+    for (int j = 0; j < kUp; ++j) {
+      ++all;
+      within += isInside(text.places[static_cast<std::size_t>(i * kUp + j)], corners) ? 1 : 0;
+    }
+  }
+  return all > 0 ? static_cast<double>(within) / all : 0.0;
 }
 
 cv::Mat atNetworkSize(const cv::Mat& labels) {

@@ -21,7 +21,7 @@ struct TrueZoneText {
   double in_sight = 0.0;  ///< share of its area that is in the picture and not hidden
   double height_px = 0.0;
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();  ///< px
-  std::vector<Eigen::Vector2d> places;               ///< px, spread evenly over it
+  std::vector<Eigen::Vector2d> places;               ///< px, spread evenly over it, from left to right
 };
 
 /// The texts of zone markers, or of signs of a class, that face a camera of a sample within `reach`
@@ -37,8 +37,10 @@ std::vector<TrueZoneText> trueZoneTexts(const SemanticSampler& sampler,
 const TrueZoneText* textWithin(const std::vector<TrueZoneText>& texts,
                                const std::array<Eigen::Vector2d, 4>& corners);
 
-/// Share of a text's area that lies in a quadrilateral (corners in order).
-double shareWithin(const TrueZoneText& text, const std::array<Eigen::Vector2d, 4>& corners);
+/// Share of a text's area that lies in a quadrilateral (corners in order); of the part of it from
+/// `from` to `to` of its width.
+double shareWithin(const TrueZoneText& text, const std::array<Eigen::Vector2d, 4>& corners,
+                   double from = 0.0, double to = 1.0);
 
 /// Labels of the size that the view network gives, taken from full ones.
 cv::Mat atNetworkSize(const cv::Mat& labels);

@@ -4,11 +4,39 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "parkade/geometry/planar.hpp"
 #include "parkade/semantics/markings/marking_objects.hpp"
 #include "parkade/semantics/standing/object_boxes.hpp"
 
 namespace parkade {
+namespace {
+
+// Where a pillar's smear has a ragged side, that looks like the foot of another one behind it.
+// Pillars do not stand so close.
+void dropPillarEchoes(const BevViews& views, const BevGeometry& geometry,
+                std::vector<ObjectObservation>& pillars) {
+  constexpr double kBeside = 1.2;  // m, off the sight line through the nearer one
+  constexpr double kBehind = 3.5;  // m
+  const auto isEchoOf = [&](const ObjectObservation& a, const ObjectObservation& b) {
+    if (a.confidence >= b.confidence) return false;
+    const Eigen::Vector2d foot = views.viewAt(geometry, a.position.head<2>()).foot;
+    const Eigen::Vector2d to_a = a.position.head<2>() - foot;
+    const Eigen::Vector2d to_b = b.position.head<2>() - foot;
+    return to_b.norm() < to_a.norm() && to_b.dot(to_a) > 0.0 &&
+           std::abs(cross(to_b, to_a)) < kBeside * to_b.norm() && (to_a - to_b).norm() < kBehind;
+  };
+  std::vector<ObjectObservation> kept;
+  for (const ObjectObservation& a : pillars) {
+    const bool echo = std::any_of(pillars.begin(), pillars.end(),
+                                  [&](const ObjectObservation& b) { return isEchoOf(a, b); });
+    if (!echo) kept.push_back(a);
+  }
+  pillars = std::move(kept);
+}
+
+}  // namespace
 
 std::vector<ObjectObservation> findPillars(const ContactFinder& finder, const BevLabels& labels,
                                            const BevViews& views, double attitude_sigma,
@@ -42,6 +70,7 @@ std::vector<ObjectObservation> findPillars(const ContactFinder& finder, const Be
     object.confidence = edge.confidence * (edge.cut ? 0.6 : 1.0);
     objects.push_back(std::move(object));
   }
+  dropPillarEchoes(views, labels.geometry, objects);
   return objects;
 }
 
