@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <opencv2/core.hpp>
+#include <optional>
 
 #include "parkade/cli/zone_text_truth.hpp"
 #include "parkade/core/units.hpp"
@@ -95,8 +95,8 @@ std::optional<std::string> lettersWithin(const TrueZoneText& text,
   const auto count = static_cast<double>(text.text.size());
   std::string shown;
   for (std::size_t i = 0; i < text.text.size(); ++i) {
-    const double share =
-        shareWithin(text, corners, static_cast<double>(i) / count, (static_cast<double>(i) + 1.0) / count);
+    const double share = shareWithin(text, corners, static_cast<double>(i) / count,
+                                     (static_cast<double>(i) + 1.0) / count);
     if (share > kGone && share < kWhole) return std::nullopt;
     if (share >= kWhole) shown += text.text[i];
   }

@@ -8,7 +8,7 @@
 namespace parkade::cli {
 namespace {
 
-constexpr int kAcross = 12;
+constexpr int kAcross = 9;
 constexpr int kUp = 5;
 constexpr double kPlaces = kAcross * kUp;
 const Eigen::Vector2d kNowhere = Eigen::Vector2d::Constant(-1e6);

@@ -21,7 +21,7 @@ struct TrueZoneText {
   double in_sight = 0.0;  ///< share of its area that is in the picture and not hidden
   double height_px = 0.0;
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();  ///< px
-  std::vector<Eigen::Vector2d> places;               ///< px, spread evenly over it, from left to right
+  std::vector<Eigen::Vector2d> places;  ///< px, spread evenly over it, from left to right
 };
 
 /// The texts of zone markers, or of signs of a class, that face a camera of a sample within `reach`

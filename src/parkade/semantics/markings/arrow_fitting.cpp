@@ -15,8 +15,8 @@ namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-constexpr double kPlain = 0.7;    // an overlap from which there is nothing to be doubted
-constexpr double kApart = 1.0;    // m: an arrow's parts lie no farther apart
+constexpr double kPlain = 0.7;        // an overlap from which there is nothing to be doubted
+constexpr double kApart = 1.0;        // m: an arrow's parts lie no farther apart
 constexpr std::ptrdiff_t kMost = 24;  // pieces that are tried together, the largest
 
 ShapeFit bestFit(const Points& points, double pixel, const std::vector<MarkingShape>& shapes,
@@ -92,8 +92,7 @@ MarkingPiece unionOf(const MarkingPiece& a, const MarkingPiece& b) {
   MarkingPiece both = a;
   both.points.insert(both.points.end(), b.points.begin(), b.points.end());
   both.at_edge.insert(both.at_edge.end(), b.at_edge.begin(), b.at_edge.end());
-  const auto share =
-      static_cast<double>(a.points.size()) / static_cast<double>(both.points.size());
+  const auto share = static_cast<double>(a.points.size()) / static_cast<double>(both.points.size());
   both.confidence = share * a.confidence + (1.0 - share) * b.confidence;
   both.cut = a.cut || b.cut;
   return both;
@@ -156,8 +155,8 @@ void unite(std::vector<Part>& parts, double pixel, const std::vector<MarkingShap
     for (std::size_t j = i + 1; j < parts.size(); ++j) consider(i, j);
   }
   while (!pairs.empty()) {
-    const auto best = std::max_element(pairs.begin(), pairs.end(),
-                                       [](const auto& a, const auto& b) { return a.gain < b.gain; });
+    const auto best = std::max_element(
+        pairs.begin(), pairs.end(), [](const auto& a, const auto& b) { return a.gain < b.gain; });
     Part both = std::move(best->both);
     const std::size_t gone[2] = {best->a, best->b};
     for (const std::size_t one : gone) {

@@ -134,8 +134,8 @@ void decodeLogits(const cv::Mat& logits, const std::vector<SemanticClass>& class
     for (int v = 0; v < height; ++v) {
       for (int part = 0; part < 4; ++part) {
         for (std::size_t i = 0; i < rows.size(); ++i) {
-          rows[i] = logits.ptr<float>(0, 4 * channels[i] + part) +
-                    static_cast<std::ptrdiff_t>(v) * width;
+          rows[i] =
+              logits.ptr<float>(0, 4 * channels[i] + part) + static_cast<std::ptrdiff_t>(v) * width;
         }
         decoder.decode(rows, meanings);
         const int row = 2 * v + part / 2;

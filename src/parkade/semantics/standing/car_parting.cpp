@@ -102,8 +102,8 @@ double extentAlong(const Points& points, const Eigen::Vector2d& direction, std::
   return high - low;
 }
 
-// By how much two parts of an edge are not as wide as cars in a row are, m. Of the nearer one all is
-// seen; the one beyond it may be hidden in part.
+// By how much two parts of an edge are not as wide as cars in a row are, m. Of the nearer one all
+// is seen; the one beyond it may be hidden in part.
 double widthMisfit(const Points& floor, std::size_t at, const Eigen::Vector2d& viewer, double row) {
   constexpr double kWidth = 1.85;
   constexpr double kVaries = 0.15;
@@ -122,7 +122,7 @@ double widthMisfit(const Points& floor, std::size_t at, const Eigen::Vector2d& v
 // Where points on the floor that are too many for one car part best into two; 0 where they are not.
 std::size_t findSizeLimit(const Points& floor, const Eigen::Vector2d& viewer,
                           std::optional<double> row) {
-  constexpr double kStep = 0.15;  // m between the places that are tried
+  constexpr double kStep = 0.15;   // m between the places that are tried
   constexpr double kMisfit = 0.3;  // of a width, in mean distances of points from faces
   // m of each car; in a row the far one may show no more than a corner.
   const double least_part = row ? 0.4 : 1.0;

@@ -16,7 +16,7 @@ namespace {
 // Where a pillar's smear has a ragged side, that looks like the foot of another one behind it.
 // Pillars do not stand so close.
 void dropPillarEchoes(const BevViews& views, const BevGeometry& geometry,
-                std::vector<ObjectObservation>& pillars) {
+                      std::vector<ObjectObservation>& pillars) {
   constexpr double kBeside = 1.2;  // m, off the sight line through the nearer one
   constexpr double kBehind = 3.5;  // m
   const auto isEchoOf = [&](const ObjectObservation& a, const ObjectObservation& b) {

@@ -20,10 +20,11 @@ Result<FaceReadings> readEach(const std::vector<ZoneMarkerFace>& faces, ZoneText
   return read;
 }
 
-std::vector<ReadFace> together(const std::vector<ZoneMarkerFace>& faces, FaceReadings readings) {
+std::vector<ReadFace> together(const std::vector<ZoneMarkerFace>& faces,
+                               const FaceReadings& readings) {
   std::vector<ReadFace> read;
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    read.push_back({&faces[i], std::move(readings[i])});
+    read.push_back({&faces[i], onceEach(readings[i])});
   }
   return read;
 }
@@ -35,14 +36,14 @@ Result<std::vector<ReadFace>> readFaces(const ZoneMarkerSight& sight, ZoneTextRe
   Result<FaceReadings> first = readEach(sight.faces, reader, only);
   if (!first) return first.error();
   if (sight.other_faces.empty() || isSettled(*first, sight.one_face)) {
-    return together(sight.faces, std::move(first).value());
+    return together(sight.faces, *first);
   }
   Result<FaceReadings> other = readEach(sight.other_faces, reader, only);
   if (!other) return other.error();
   const bool one =
       sight.one_face ? showsOneFace(*first, *other, true) : showsOneFace(*other, *first, false);
-  return one == sight.one_face ? together(sight.faces, std::move(first).value())
-                               : together(sight.other_faces, std::move(other).value());
+  return one == sight.one_face ? together(sight.faces, *first)
+                               : together(sight.other_faces, *other);
 }
 
 Result<std::vector<ZoneMarkerView>> viewsOf(const std::vector<ZoneMarkerSight>& sights,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "parkade/core/check.hpp"
 
@@ -58,6 +59,29 @@ bool isCut(const std::string& whole, const FaceReadings& faces) {
 }
 
 }  // namespace
+
+std::vector<TextReading> onceEach(const std::vector<TextReading>& readings) {
+  std::vector<TextReading> out;
+  for (TextReading reading : readings) {
+    const std::size_t half = reading.text.size() / 2;
+    if (half >= 2 && reading.text.size() == 2 * half &&
+        reading.text.compare(0, half, reading.text, half, half) == 0) {
+      reading.text.resize(half);
+    }
+    const auto same = std::find_if(out.begin(), out.end(), [&](const TextReading& other) {
+      return other.text == reading.text;
+    });
+    if (same == out.end()) {
+      out.push_back(std::move(reading));
+    } else {
+      same->probability += reading.probability;
+    }
+  }
+  std::stable_sort(out.begin(), out.end(), [](const TextReading& a, const TextReading& b) {
+    return a.probability > b.probability;
+  });
+  return out;
+}
 
 bool isSettled(const FaceReadings& faces, bool one_face) {
   const TextReading text = surest(faces);

@@ -15,6 +15,9 @@ namespace parkade {
 /// What a reader says of each face, best first; at least one reading a face (checked).
 using FaceReadings = std::vector<std::vector<TextReading>>;
 
+/// Readings of one patch, best first, with a text that stands there twice ("B7B7") for the text.
+std::vector<TextReading> onceEach(const std::vector<TextReading>& readings);
+
 /// Whether readings of the likelier parting leave no question, so that the other need not be read.
 bool isSettled(const FaceReadings& faces, bool one_face);
 

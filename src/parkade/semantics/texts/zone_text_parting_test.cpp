@@ -31,6 +31,17 @@ TEST(ZoneTextParting, TwoFacesTakenForOne) {
   EXPECT_FALSE(isSettled({face("7B7", 0.99)}, true));
 }
 
+TEST(ZoneTextParting, ATextThatStandsTwiceIsTheText) {
+  const std::vector<TextReading> once =
+      onceEach({{"A-9", 0.3}, {"A-9A-9", 0.5}, {"11", 0.1}, {"A-9A", 0.05}, {"", 0.01}});
+  ASSERT_EQ(once.size(), 4U);
+  EXPECT_EQ(once[0].text, "A-9");
+  EXPECT_NEAR(once[0].probability, 0.8, 1e-12);
+  EXPECT_EQ(once[1].text, "11");
+  EXPECT_EQ(once[2].text, "A-9A");
+  EXPECT_EQ(once[3].text, "");
+}
+
 TEST(ZoneTextParting, WhatIsSureAndWholeIsSettled) {
   EXPECT_TRUE(isSettled({face("A11", 0.95)}, true));
   EXPECT_TRUE(isSettled({face("C-8", 0.95), face("C-8", 0.6)}, false));
