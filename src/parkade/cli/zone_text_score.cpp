@@ -19,7 +19,6 @@
 #include "parkade/semantics/texts/zone_marker_views.hpp"
 #include "parkade/semantics/texts/zone_text_reader.hpp"
 #include "parkade/types/level_frame.hpp"
-#include "parkade/types/text_evidence.hpp"
 
 namespace parkade::cli {
 namespace {
@@ -119,14 +118,10 @@ class ZoneTextScore : public SampleScore {
         trueZoneTexts(sampler, sample, camera, true_labels, 1.5 * kTextReach);
     std::vector<Read> reads;
     for (const ZoneMarkerSight& sight : sights) {
-      Result<std::vector<ReadFace>> faces = readFaces(sight, reader_, kZoneLetters);
-      if (!faces) return faces.error();
-      // A pillar's faces bear the same text: what is told is what all that is read of it says.
-      TextEvidence evidence;
-      for (const ReadFace& read : *faces) evidence.add(read.readings);
-      const TextReading told = evidence.best();
-      for (const ReadFace& read : *faces) {
-        reads.push_back({read.face, textWithin(texts, read.face->corners), told});
+      Result<ReadMarker> marker = readMarker(sight, reader_, kZoneLetters);
+      if (!marker) return marker.error();
+      for (const ZoneMarkerFace* face : marker->faces) {
+        reads.push_back({face, textWithin(texts, face->corners), marker->readings.front()});
       }
     }
     count(texts, reads);

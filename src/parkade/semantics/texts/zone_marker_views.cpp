@@ -20,30 +20,27 @@ Result<FaceReadings> readEach(const std::vector<ZoneMarkerFace>& faces, ZoneText
   return read;
 }
 
-std::vector<ReadFace> together(const std::vector<ZoneMarkerFace>& faces,
-                               const FaceReadings& readings) {
-  std::vector<ReadFace> read;
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    read.push_back({&faces[i], onceEach(readings[i])});
-  }
-  return read;
-}
-
 }  // namespace
 
-Result<std::vector<ReadFace>> readFaces(const ZoneMarkerSight& sight, ZoneTextReader& reader,
-                                        const std::string& only) {
-  Result<FaceReadings> first = readEach(sight.faces, reader, only);
-  if (!first) return first.error();
-  if (sight.other_faces.empty() || isSettled(*first, sight.one_face)) {
-    return together(sight.faces, *first);
+Result<ReadMarker> readMarker(const ZoneMarkerSight& sight, ZoneTextReader& reader,
+                              const std::string& only) {
+  ReadMarker read;
+  const std::vector<ZoneMarkerFace>* const faces[2] = {&sight.faces, &sight.other_faces};
+  std::vector<FaceReadings> partings;
+  std::vector<const std::vector<ZoneMarkerFace>*> parted;
+  for (const std::vector<ZoneMarkerFace>* const part : faces) {
+    if (part->empty()) continue;
+    Result<FaceReadings> readings = readEach(*part, reader, only);
+    if (!readings) return readings.error();
+    partings.push_back(std::move(readings).value());
+    parted.push_back(part);
+    if (isSettled(partings.back())) break;
   }
-  Result<FaceReadings> other = readEach(sight.other_faces, reader, only);
-  if (!other) return other.error();
-  const bool one =
-      sight.one_face ? showsOneFace(*first, *other, true) : showsOneFace(*other, *first, false);
-  return one == sight.one_face ? together(sight.faces, *first)
-                               : together(sight.other_faces, *other);
+  if (partings.empty()) return read;
+  SightText told = tellText(partings);
+  read.readings = std::move(told.readings);
+  for (const ZoneMarkerFace& face : *parted[told.parting]) read.faces.push_back(&face);
+  return read;
 }
 
 Result<std::vector<ZoneMarkerView>> viewsOf(const std::vector<ZoneMarkerSight>& sights,
@@ -56,9 +53,9 @@ Result<std::vector<ZoneMarkerView>> viewsOf(const std::vector<ZoneMarkerSight>& 
     ZoneMarkerView view{eye, sight.ray_level, sight.sigma, sight.height_ratio, sight.height_sigma,
                         {},  !sight.cut};
     if (reader != nullptr) {
-      Result<std::vector<ReadFace>> faces = readFaces(sight, *reader, only);
-      if (!faces) return faces.error();
-      for (ReadFace& face : *faces) view.readings.push_back(std::move(face.readings));
+      Result<ReadMarker> read = readMarker(sight, *reader, only);
+      if (!read) return read.error();
+      if (!read->faces.empty()) view.readings.push_back(std::move(read->readings));
     }
     views.push_back(std::move(view));
   }

@@ -13,17 +13,17 @@
 
 namespace parkade {
 
-/// A face and what is written on it, best first.
-struct ReadFace {
-  const ZoneMarkerFace* face = nullptr;  ///< of the sight
-  std::vector<TextReading> readings;
+/// A marker, or a sign, and what is written on it.
+struct ReadMarker {
+  std::vector<const ZoneMarkerFace*> faces;  ///< of the sight, that show it; none: nothing was read
+  std::vector<TextReading> readings;         ///< best first, by all that is read of it
 };
 
 /// Reads a sight's faces, from the characters `only` (empty: all). Where that leaves a question and
-/// its outline could be parted otherwise, those faces are read too, and what is read decides
-/// (zone_text_parting.hpp). Fails as the reader does.
-Result<std::vector<ReadFace>> readFaces(const ZoneMarkerSight& sight, ZoneTextReader& reader,
-                                        const std::string& only = {});
+/// its outline could be parted otherwise, those faces are read too (zone_text_parting.hpp). Fails
+/// as the reader does.
+Result<ReadMarker> readMarker(const ZoneMarkerSight& sight, ZoneTextReader& reader,
+                              const std::string& only = {});
 
 /// What one camera's sights say to the tracker: those seen whole, from the camera's place `eye` in
 /// the axes of their rays. `reader` reads their faces, from the characters `only` (empty: all);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "parkade/types/text_reading.hpp"
@@ -10,18 +11,21 @@ namespace parkade {
 
 // A marker's outline seldom tells surely whether one face of a pillar is in sight or two. What is
 // written there does: a pillar's faces bear the same text, so that two taken for one read "B7B7"
-// (or "7B7", "B77"), and one that is cut in two reads "B" and "7". docs/math/zone_markers.md.
+// (or "7B7"), and one that is cut in two reads "B" and "7". docs/math/zone_markers.md.
 
 /// What a reader says of each face, best first; at least one reading a face (checked).
 using FaceReadings = std::vector<std::vector<TextReading>>;
 
-/// Readings of one patch, best first, with a text that stands there twice ("B7B7") for the text.
-std::vector<TextReading> onceEach(const std::vector<TextReading>& readings);
+/// What a marker bears, by all that is read of it.
+struct SightText {
+  std::size_t parting = 0;            ///< the one of those given that shows it best
+  std::vector<TextReading> readings;  ///< best first; the empty text says that it is plain
+};
 
-/// Whether readings of the likelier parting leave no question, so that the other need not be read.
-bool isSettled(const FaceReadings& faces, bool one_face);
+/// Of the readings of an outline's faces, parted one way or more (checked).
+SightText tellText(const std::vector<FaceReadings>& partings);
 
-/// Whether readings speak for one face rather than for two. likelier_one: what the outline says.
-bool showsOneFace(const FaceReadings& one, const FaceReadings& two, bool likelier_one);
+/// Whether readings of one parting leave no question, so that another need not be read.
+bool isSettled(const FaceReadings& faces);
 
 }  // namespace parkade

@@ -15,45 +15,52 @@ std::vector<TextReading> plain() {
   return {{"", 0.9}, {"1", 0.05}};
 }
 
+std::string told(const FaceReadings& one, const FaceReadings& two) {
+  return tellText({one, two}).readings.front().text;
+}
+
 TEST(ZoneTextParting, OneFaceThatAnEdgeCuts) {
   // Parts are read more surely than the whole.
-  EXPECT_TRUE(showsOneFace({face("8A", 0.7)}, {face("8", 0.92), face("A", 0.8)}, false));
-  EXPECT_TRUE(showsOneFace({face("D-3", 0.5)}, {plain(), face("-3", 0.95)}, false));
-  EXPECT_FALSE(isSettled({face("8", 0.99), face("A", 0.99)}, false));
-  EXPECT_FALSE(isSettled({face("8", 0.99)}, false));
+  EXPECT_EQ(told({face("8A", 0.7)}, {face("8", 0.92), face("A", 0.8)}), "8A");
+  EXPECT_EQ(told({face("D-3", 0.5)}, {plain(), face("-3", 0.95)}), "D-3");
+  EXPECT_FALSE(isSettled({face("8", 0.99), face("A", 0.99)}));
+  EXPECT_FALSE(isSettled({}));
 }
 
 TEST(ZoneTextParting, TwoFacesTakenForOne) {
   for (const char* text : {"B7B7", "7B7", "B7B", "B77", "BB7"}) {
-    EXPECT_FALSE(showsOneFace({face(text, 0.95)}, {face("B7", 0.5), plain()}, true)) << text;
+    EXPECT_EQ(told({face(text, 0.95)}, {face("B7", 0.5), plain()}), "B7") << text;
   }
-  EXPECT_FALSE(showsOneFace({face("B7", 0.9)}, {face("B7", 0.4), face("B7", 0.5)}, true));
-  EXPECT_FALSE(isSettled({face("7B7", 0.99)}, true));
+  EXPECT_EQ(told({face("5A5A", 0.97)}, {face("5A5", 0.97)}), "5A");
+  EXPECT_EQ(told({face("7C7C", 0.95)}, {face("C7C", 0.96), face("Z", 0.4)}), "7C");
+  EXPECT_EQ(told({face("05D05", 0.54)}, {face("D05D05", 0.2)}), "D05");
+  EXPECT_FALSE(isSettled({face("7B7", 0.99)}));
+  // The parting that shows it is told as well.
+  EXPECT_EQ(tellText({{face("B7B7", 0.95)}, {face("B7", 0.5), plain()}}).parting, 0U);
+  EXPECT_EQ(tellText({{face("B7B", 0.5)}, {face("B7", 0.9), face("B7", 0.9)}}).parting, 1U);
 }
 
-TEST(ZoneTextParting, ATextThatStandsTwiceIsTheText) {
-  const std::vector<TextReading> once =
-      onceEach({{"A-9", 0.3}, {"A-9A-9", 0.5}, {"11", 0.1}, {"A-9A", 0.05}, {"", 0.01}});
-  ASSERT_EQ(once.size(), 4U);
-  EXPECT_EQ(once[0].text, "A-9");
-  EXPECT_NEAR(once[0].probability, 0.8, 1e-12);
-  EXPECT_EQ(once[1].text, "11");
-  EXPECT_EQ(once[2].text, "A-9A");
-  EXPECT_EQ(once[3].text, "");
+TEST(ZoneTextParting, FacesThatAgreeMakeItSurer) {
+  const std::vector<TextReading> readings = tellText({{face("B7", 0.6), face("B7", 0.6)}}).readings;
+  EXPECT_EQ(readings.front().text, "B7");
+  EXPECT_GT(readings.front().probability, 0.75);
+  double sum = 0.0;
+  for (const TextReading& reading : readings) sum += reading.probability;
+  EXPECT_LE(sum, 1.0 + 1e-12);
 }
 
 TEST(ZoneTextParting, WhatIsSureAndWholeIsSettled) {
-  EXPECT_TRUE(isSettled({face("A11", 0.95)}, true));
-  EXPECT_TRUE(isSettled({face("C-8", 0.95), face("C-8", 0.6)}, false));
-  EXPECT_FALSE(isSettled({face("A11", 0.8)}, true));
-  EXPECT_FALSE(isSettled({plain()}, true));
+  EXPECT_TRUE(isSettled({face("A11", 0.95)}));
+  EXPECT_TRUE(isSettled({face("A11A11", 0.95)}));
+  EXPECT_TRUE(isSettled({face("C-8", 0.95), face("C-8", 0.6)}));
+  EXPECT_FALSE(isSettled({face("A11", 0.8)}));
+  EXPECT_FALSE(isSettled({plain()}));
 }
 
 TEST(ZoneTextParting, OtherwiseTheSurerCounts) {
-  EXPECT_TRUE(showsOneFace({face("A4", 0.8)}, {face("14", 0.6), plain()}, false));
-  EXPECT_FALSE(showsOneFace({face("A4", 0.5)}, {face("H3", 0.6), plain()}, true));
-  EXPECT_TRUE(showsOneFace({plain()}, {}, true));
-  EXPECT_FALSE(showsOneFace({{{"", 1.0}}}, {{{"", 1.0}}, {{"", 1.0}}}, false));
+  EXPECT_EQ(told({face("A4", 0.8)}, {face("14", 0.6), plain()}), "A4");
+  EXPECT_EQ(told({face("A4", 0.5)}, {face("H3", 0.6), plain()}), "H3");
+  EXPECT_EQ(told({plain()}, {plain()}), "");
 }
 
 }  // namespace
