@@ -19,8 +19,9 @@ constexpr double kPlain = 0.7;        // an overlap from which there is nothing 
 constexpr double kApart = 1.0;        // m: an arrow's parts lie no farther apart
 constexpr std::ptrdiff_t kMost = 24;  // pieces that are tried together, the largest
 
+// coarse: a first look, several times faster.
 ShapeFit bestFit(const Points& points, double pixel, const std::vector<MarkingShape>& shapes,
-                 const ArrowLimits& limits) {
+                 const ArrowLimits& limits, bool coarse = false) {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& p : points) mean += p;
   mean /= static_cast<double>(points.size());
@@ -34,7 +35,8 @@ ShapeFit bestFit(const Points& points, double pixel, const std::vector<MarkingSh
   // Heads to one side turn the main axis away from the shaft; a T may be as wide as it is long.
   const double ratio = eigen.eigenvalues()[0] / std::max(eigen.eigenvalues()[1], 1e-9);
   search.half_range = ratio > 0.4 ? M_PI_2 : (ratio > 0.05 ? 0.8 : 0.25);
-  search.step = M_PI / 45.0;
+  search.step = coarse ? M_PI / 30.0 : M_PI / 45.0;
+  if (coarse) search.points = 50;
   search.min_length = limits.min_length;
   search.max_length = limits.max_length;
   return fitShape(points, pixel, shapes, search);
@@ -130,37 +132,46 @@ std::vector<MarkingPiece> splitAtGaps(const MarkingPiece& piece, double pixel) {
   return parts;
 }
 
-// Takes the two parts together that gain most by it, as long as any do.
+// Takes the two parts together that gain most by it, as long as any do. A first look at each pair
+// tells which; a second one at the best whether it is so.
 void unite(std::vector<Part>& parts, double pixel, const std::vector<MarkingShape>& shapes,
            const ArrowLimits& limits) {
   struct Pair {
     std::size_t a, b;  // serial numbers
-    Part both;
-    double gain;
+    double gain;       // by the first look
   };
   std::vector<std::size_t> serial(parts.size());
   for (std::size_t i = 0; i < serial.size(); ++i) serial[i] = i;
   std::size_t next = parts.size();
   std::vector<Pair> pairs;
   const auto consider = [&](std::size_t i, std::size_t j) {
+    constexpr double kRough = 0.05;  // by which a first look may err
     if (parts[i].isPlain() && parts[j].isPlain()) return;
     if (parts[i].distanceTo(parts[j]) > kApart) return;
-    Part both(unionOf(parts[i].paint(), parts[j].paint()), pixel, shapes, limits);
-    const double gain = both.value() - parts[i].value() - parts[j].value();
-    if (both.isArrow() && gain > 0.0) {
-      pairs.push_back({serial[i], serial[j], std::move(both), gain});
-    }
+    const MarkingPiece both = unionOf(parts[i].paint(), parts[j].paint());
+    const double overlap = bestFit(both.points, pixel, shapes, limits, true).overlap + kRough;
+    const double gain = overlap * static_cast<double>(both.points.size()) - parts[i].value() -
+                        parts[j].value();
+    if (overlap >= limits.min_overlap && gain > 0.0) pairs.push_back({serial[i], serial[j], gain});
   };
   for (std::size_t i = 0; i < parts.size(); ++i) {
     for (std::size_t j = i + 1; j < parts.size(); ++j) consider(i, j);
   }
+  const auto placeOf = [&](std::size_t one) {
+    return std::find(serial.begin(), serial.end(), one) - serial.begin();
+  };
   while (!pairs.empty()) {
-    const auto best = std::max_element(
-        pairs.begin(), pairs.end(), [](const auto& a, const auto& b) { return a.gain < b.gain; });
-    Part both = std::move(best->both);
+    const auto best =
+        std::max_element(pairs.begin(), pairs.end(),
+                         [](const Pair& a, const Pair& b) { return a.gain < b.gain; });
     const std::size_t gone[2] = {best->a, best->b};
+    pairs.erase(best);
+    const Part& first = parts[static_cast<std::size_t>(placeOf(gone[0]))];
+    const Part& second = parts[static_cast<std::size_t>(placeOf(gone[1]))];
+    Part both(unionOf(first.paint(), second.paint()), pixel, shapes, limits);
+    if (!both.isArrow() || both.value() <= first.value() + second.value()) continue;
     for (const std::size_t one : gone) {
-      const auto at = std::find(serial.begin(), serial.end(), one) - serial.begin();
+      const auto at = placeOf(one);
       serial.erase(serial.begin() + at);
       parts.erase(parts.begin() + at);
       std::erase_if(pairs, [one](const Pair& p) { return p.a == one || p.b == one; });

@@ -135,8 +135,7 @@ ShapeFit fitShape(const std::vector<Eigen::Vector2d>& points, double pixel,
                   const std::vector<MarkingShape>& shapes, const ShapeSearch& search) {
   ShapeFit fit;
   if (points.empty() || shapes.empty()) return fit;
-  constexpr std::size_t kEnough = 220;
-  const std::size_t stride = std::max<std::size_t>(1, points.size() / kEnough);
+  const std::size_t stride = std::max<std::size_t>(1, points.size() / search.points);
   std::vector<Eigen::Vector2d> some;
   for (std::size_t i = 0; i < points.size(); i += stride) some.push_back(points[i]);
   const auto all = static_cast<double>(points.size());

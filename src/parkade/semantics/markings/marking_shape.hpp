@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <opencv2/core/mat.hpp>
 #include <string>
@@ -61,6 +62,7 @@ struct ShapeSearch {
   double min_length = 0.5;    ///< m
   double max_length = 6.0;    ///< m
   double width_slack = 0.25;  ///< share of its width that a shape may be off
+  std::size_t points = 220;   ///< that are looked at, evenly of those given
 };
 
 /// The shape, place, size and heading that cover the points (pixels of the given side, m) best.
