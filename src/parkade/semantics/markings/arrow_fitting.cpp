@@ -192,6 +192,7 @@ std::vector<FittedArrow> fitArrows(std::vector<MarkingPiece> pieces, double pixe
   constexpr double kClearly = 1.15;
   std::vector<Part> parts;
   for (MarkingPiece& piece : pieces) {
+    if (piece.cut) continue;  // its place is not known
     Part whole(std::move(piece), pixel, shapes, limits);
     if (whole.isPlain()) {
       parts.push_back(std::move(whole));
