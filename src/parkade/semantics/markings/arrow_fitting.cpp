@@ -106,8 +106,9 @@ std::vector<MarkingPiece> splitAtGaps(const MarkingPiece& piece, double pixel) {
   cv::Point high(-low.x, -low.y);
   std::vector<cv::Point> cells;
   for (const Eigen::Vector2d& p : piece.points) {
-    cells.emplace_back(static_cast<int>(std::lround(p.x() / pixel)),
-                       static_cast<int>(std::lround(p.y() / pixel)));
+    const Eigen::Vector2d steps = (p - piece.points.front()) / pixel;  // whole numbers, nearly
+    cells.emplace_back(static_cast<int>(std::lround(steps.x())),
+                       static_cast<int>(std::lround(steps.y())));
     low = {std::min(low.x, cells.back().x), std::min(low.y, cells.back().y)};
     high = {std::max(high.x, cells.back().x), std::max(high.y, cells.back().y)};
   }
@@ -150,8 +151,8 @@ void unite(std::vector<Part>& parts, double pixel, const std::vector<MarkingShap
     if (parts[i].distanceTo(parts[j]) > kApart) return;
     const MarkingPiece both = unionOf(parts[i].paint(), parts[j].paint());
     const double overlap = bestFit(both.points, pixel, shapes, limits, true).overlap + kRough;
-    const double gain = overlap * static_cast<double>(both.points.size()) - parts[i].value() -
-                        parts[j].value();
+    const double gain =
+        overlap * static_cast<double>(both.points.size()) - parts[i].value() - parts[j].value();
     if (overlap >= limits.min_overlap && gain > 0.0) pairs.push_back({serial[i], serial[j], gain});
   };
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -161,9 +162,8 @@ void unite(std::vector<Part>& parts, double pixel, const std::vector<MarkingShap
     return std::find(serial.begin(), serial.end(), one) - serial.begin();
   };
   while (!pairs.empty()) {
-    const auto best =
-        std::max_element(pairs.begin(), pairs.end(),
-                         [](const Pair& a, const Pair& b) { return a.gain < b.gain; });
+    const auto best = std::max_element(
+        pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.gain < b.gain; });
     const std::size_t gone[2] = {best->a, best->b};
     pairs.erase(best);
     const Part& first = parts[static_cast<std::size_t>(placeOf(gone[0]))];

@@ -25,8 +25,8 @@ struct FittedArrow {
 /// Arrows in pieces of arrow paint whose pixels have sides of the given length (m). Wear parts an
 /// arrow's head from its shaft, and arrows one behind the other may touch: of the ways to take
 /// pieces together or apart the one is chosen in which shapes cover most of the paint. Pieces that
-/// no arrow's shape fits, or a plain bar (a shape without a meaning) fits better, and those that are
-/// cut off are left out.
+/// no arrow's shape fits, or a plain bar (a shape without a meaning) fits better, and those that
+/// are cut off are left out.
 std::vector<FittedArrow> fitArrows(std::vector<MarkingPiece> pieces, double pixel,
                                    const std::vector<MarkingShape>& shapes,
                                    const ArrowLimits& limits);
