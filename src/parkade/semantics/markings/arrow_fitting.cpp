@@ -90,13 +90,12 @@ class Part {
   double value_ = 0.0;
 };
 
+// Of pieces that are not cut off: what of their pixels lies at an edge is of no interest any more.
 MarkingPiece unionOf(const MarkingPiece& a, const MarkingPiece& b) {
   MarkingPiece both = a;
   both.points.insert(both.points.end(), b.points.begin(), b.points.end());
-  both.at_edge.insert(both.at_edge.end(), b.at_edge.begin(), b.at_edge.end());
   const auto share = static_cast<double>(a.points.size()) / static_cast<double>(both.points.size());
   both.confidence = share * a.confidence + (1.0 - share) * b.confidence;
-  both.cut = a.cut || b.cut;
   return both;
 }
 
@@ -117,18 +116,13 @@ std::vector<MarkingPiece> splitAtGaps(const MarkingPiece& piece, double pixel) {
   cv::Mat part_of;
   const int count = cv::connectedComponents(paint, part_of, 8, CV_32S);
   std::vector<MarkingPiece> parts(static_cast<std::size_t>(count - 1));
-  constexpr int kTouches = 3;
-  std::vector<int> touches(parts.size(), 0);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const auto k = static_cast<std::size_t>(part_of.at<int>(cells[i] - low) - 1);
     parts[k].points.push_back(piece.points[i]);
-    parts[k].at_edge.push_back(piece.at_edge[i]);
-    touches[k] += piece.at_edge[i] ? 1 : 0;
   }
-  for (std::size_t k = 0; k < parts.size(); ++k) {
-    parts[k].semantic_class = piece.semantic_class;
-    parts[k].confidence = piece.confidence;
-    parts[k].cut = touches[k] >= kTouches;
+  for (MarkingPiece& part : parts) {
+    part.semantic_class = piece.semantic_class;
+    part.confidence = piece.confidence;
   }
   return parts;
 }
@@ -202,11 +196,13 @@ std::vector<FittedArrow> fitArrows(std::vector<MarkingPiece> pieces, double pixe
     std::erase_if(split, [](const MarkingPiece& p) { return p.points.size() < kLeast; });
     std::vector<Part> own;
     double apart = 0.0;
-    for (MarkingPiece& one : split) own.emplace_back(std::move(one), pixel, shapes, limits);
-    if (own.size() > 1 && std::ssize(own) <= kMost) unite(own, pixel, shapes, limits);
-    for (const Part& part : own) apart += part.value();
+    if (split.size() > 1 && std::ssize(split) <= kMost) {
+      for (MarkingPiece& one : split) own.emplace_back(std::move(one), pixel, shapes, limits);
+      unite(own, pixel, shapes, limits);
+      for (const Part& part : own) apart += part.value();
+    }
     const double least = whole.isArrow() ? kClearly * whole.value() : whole.value();
-    if (own.size() > 1 && std::ssize(own) <= kMost && apart > least) {
+    if (own.size() > 1 && apart > least) {
       for (Part& part : own) parts.push_back(std::move(part));
     } else {
       parts.push_back(std::move(whole));

@@ -231,7 +231,6 @@ std::vector<ObjectObservation> MarkingExtractor::extract(const BevLabels& labels
   }
   const ArrowLimits limits{options_.min_overlap, options_.min_arrow_m};
   for (const FittedArrow& arrow : fitArrows(std::move(arrows), pixel, arrows_, limits)) {
-    if (arrow.paint.cut) continue;
     ObjectObservation object;
     object.semantic_class = SemanticClass::kArrow;
     double sigma_along = 0.0;

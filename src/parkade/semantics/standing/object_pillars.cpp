@@ -19,9 +19,9 @@ void dropPillarEchoes(const BevViews& views, const BevGeometry& geometry,
                       std::vector<ObjectObservation>& pillars) {
   constexpr double kBeside = 1.2;  // m, off the sight line through the nearer one
   constexpr double kBehind = 3.5;  // m
-  const auto isEchoOf = [&](const ObjectObservation& a, const ObjectObservation& b) {
+  const auto isEchoOf = [&](const ObjectObservation& a, const Eigen::Vector2d& foot,
+                            const ObjectObservation& b) {
     if (a.confidence >= b.confidence) return false;
-    const Eigen::Vector2d foot = views.viewAt(geometry, a.position.head<2>()).foot;
     const Eigen::Vector2d to_a = a.position.head<2>() - foot;
     const Eigen::Vector2d to_b = b.position.head<2>() - foot;
     return to_b.norm() < to_a.norm() && to_b.dot(to_a) > 0.0 &&
@@ -29,8 +29,9 @@ void dropPillarEchoes(const BevViews& views, const BevGeometry& geometry,
   };
   std::vector<ObjectObservation> kept;
   for (const ObjectObservation& a : pillars) {
+    const Eigen::Vector2d foot = views.viewAt(geometry, a.position.head<2>()).foot;
     const bool echo = std::any_of(pillars.begin(), pillars.end(),
-                                  [&](const ObjectObservation& b) { return isEchoOf(a, b); });
+                                  [&](const ObjectObservation& b) { return isEchoOf(a, foot, b); });
     if (!echo) kept.push_back(a);
   }
   pillars = std::move(kept);

@@ -180,7 +180,6 @@ std::vector<ZoneMarkerSight> find(const cv::Mat& labels, const cv::Mat& image, c
       }
       return out;
     };
-    found->sight.one_face = found->marker.faces.size() == 1;
     if (faces < options.max_faces) {
       found->sight.faces = straightened(found->marker.faces);
       found->sight.other_faces = straightened(found->marker.other_faces);

@@ -57,7 +57,6 @@ struct ZoneMarkerSight {
   std::vector<ZoneMarkerFace> faces;  ///< from left to right; those that can be read
   /// The other way to part the outline into faces.
   std::vector<ZoneMarkerFace> other_faces;
-  bool one_face = true;  ///< `faces` take it for a single face, `other_faces` for two; or reversed
 };
 
 /// Finds zone markers in the labels of a camera's picture and straightens their faces.
