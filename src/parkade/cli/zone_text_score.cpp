@@ -36,7 +36,7 @@ struct TextCount {
 };
 
 struct Read {
-  const ZoneMarkerFace* face = nullptr;
+  ZoneMarkerFace face;
   const TrueZoneText* truth = nullptr;
   TextReading reading;
 };
@@ -120,8 +120,8 @@ class ZoneTextScore : public SampleScore {
     for (const ZoneMarkerSight& sight : sights) {
       Result<ReadMarker> marker = readMarker(sight, reader_, kZoneLetters);
       if (!marker) return marker.error();
-      for (const ZoneMarkerFace* face : marker->faces) {
-        reads.push_back({face, textWithin(texts, face->corners), marker->readings.front()});
+      for (const ZoneMarkerFace& face : marker->faces) {
+        reads.push_back({face, textWithin(texts, face.corners), marker->readings.front()});
       }
     }
     count(texts, reads);
@@ -144,7 +144,7 @@ class ZoneTextScore : public SampleScore {
       ++bins_[bin].texts;
       // A pillar's faces bear the same text: a face that shows two of them is read once.
       bins_[bin].right += std::any_of(reads.begin(), reads.end(), [&](const Read& read) {
-        return read.reading.text == text.text && holds(*read.face, text.middle);
+        return read.reading.text == text.text && holds(read.face, text.middle);
       });
     }
   }
@@ -166,7 +166,7 @@ class ZoneTextScore : public SampleScore {
           joinPath(options_.pictures, fmt::format("{}_g{}_{:03d}_cam{}_{}_{}_is_{}.png",
                                                   found == truth ? "right" : "wrong", garage_,
                                                   sample.frames.index, camera, k++, found, truth)),
-          read.face->patch, {.png = true});
+          read.face.patch, {.png = true});
       if (!status) return status;
     }
     return {};

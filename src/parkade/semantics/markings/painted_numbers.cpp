@@ -167,7 +167,7 @@ cv::Mat straightenNumber(const PaintedNumber& number, const cv::Mat& image, cons
   const double seen = seenHeight(number, camera, {}, T_level_cam);
   const int fine = std::clamp(static_cast<int>(std::ceil(seen / (number.height * scale))), 1, 3);
   const Eigen::Vector2d up = number.up();
-  cv::Mat patch = sampleTextPatch(image, fine, [&](double u, double v) {
+  cv::Mat patch = sampleTextPatch(image, kZonePatchHeight, fine, [&](double u, double v) {
     const Eigen::Vector2d p = number.center + u / scale * number.right - v / scale * up;
     Eigen::Vector2d pixel;
     return camera.project(T_cam_level * onGround(p), pixel) ? pixel : kNoPixel;

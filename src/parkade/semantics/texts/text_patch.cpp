@@ -9,14 +9,14 @@
 #include "parkade/core/units.hpp"
 
 namespace parkade {
-cv::Mat sampleTextPatch(const cv::Mat& image, int fine,
+cv::Mat sampleTextPatch(const cv::Mat& image, int rows, int fine,
                         const std::function<Eigen::Vector2d(double, double)>& pixel_at) {
-  const cv::Size size(fine * kZonePatchWidth, fine * kZonePatchHeight);
+  const cv::Size size(fine * kZonePatchWidth, fine * rows);
   cv::Mat map(size, CV_32FC2);
   for (int v = 0; v < size.height; ++v) {
     for (int u = 0; u < size.width; ++u) {
-      const Eigen::Vector2d pixel = pixel_at((u + 0.5) / fine - 0.5 * kZonePatchWidth,
-                                             (v + 0.5) / fine - 0.5 * kZonePatchHeight);
+      const Eigen::Vector2d pixel =
+          pixel_at((u + 0.5) / fine - 0.5 * kZonePatchWidth, (v + 0.5) / fine - 0.5 * rows);
       map.at<cv::Vec2f>(v, u) = {static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
     }
   }
@@ -24,7 +24,7 @@ cv::Mat sampleTextPatch(const cv::Mat& image, int fine,
   cv::remap(image, sampled, map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_CONSTANT);
   sampled.convertTo(sampled, CV_32F);
   if (fine > 1) {
-    cv::resize(sampled, sampled, {kZonePatchWidth, kZonePatchHeight}, 0, 0, cv::INTER_AREA);
+    cv::resize(sampled, sampled, {kZonePatchWidth, rows}, 0, 0, cv::INTER_AREA);
   }
   if (sampled.channels() == 1) cv::cvtColor(sampled, sampled, cv::COLOR_GRAY2BGR);
   return sampled;

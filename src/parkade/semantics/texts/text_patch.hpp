@@ -11,14 +11,17 @@ namespace parkade {
 /// Straightened texts have this size; the text stands in the middle, grey beside it.
 inline constexpr int kZonePatchWidth = 96;
 inline constexpr int kZonePatchHeight = 40;
+/// With what stands above and below it; so far apart lie the patches in it that are read.
+inline constexpr int kTallPatchHeight = 72;
+inline constexpr int kTallPatchStep = 8;
 
 /// A pixel of no picture.
 inline const Eigen::Vector2d kNoPixel(-10.0, -10.0);
 
-/// Samples a picture (grey or BGR) as a patch, CV_32FC3 (BGR). pixel_at: the picture's pixel for a
-/// place of the patch, px right of and below its middle. fine: samples along each axis of a pixel
-/// of the patch, which are averaged.
-cv::Mat sampleTextPatch(const cv::Mat& image, int fine,
+/// Samples a picture (grey or BGR) as a patch of `rows` rows, CV_32FC3 (BGR). pixel_at: the
+/// picture's pixel for a place of the patch, px right of and below its middle. fine: samples along
+/// each axis of a pixel of the patch, which are averaged.
+cv::Mat sampleTextPatch(const cv::Mat& image, int rows, int fine,
                         const std::function<Eigen::Vector2d(double, double)>& pixel_at);
 
 /// Brings a sampled patch to one brightness and contrast whatever its light, by what lies inside

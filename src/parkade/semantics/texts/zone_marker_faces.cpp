@@ -168,10 +168,13 @@ std::vector<ZoneMarkerSight> find(const cv::Mat& labels, const cv::Mat& image, c
        findMarkerBlobs(labels, mask, search.semantic_class, options.min_label_px)) {
     std::optional<MeasuredSight> found = measure(blob, scale, camera, R_level_cam, search.corners);
     if (!found) continue;
+    found->sight.semantic_class = search.semantic_class;
     const auto straightened = [&](const std::vector<FittedFace>& fitted) {
       std::vector<ZoneMarkerFace> out;
       for (const FittedFace& face : fitted) {
-        if (!found->sight.legible) break;
+        // A pillar's text may stand there twice, a sign's does not.
+        const bool pillar = search.semantic_class == SemanticClass::kZoneMarker;
+        if (!pillar && !found->sight.legible) break;
         if (face.slant() > options.max_slant_deg * M_PI / 180.0) continue;
         ZoneMarkerFace straight = straighten(image, found->view, middleOf(face, search.share),
                                              found->marker.middle / search.share);

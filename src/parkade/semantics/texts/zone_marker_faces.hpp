@@ -38,8 +38,10 @@ struct ZoneMarkerFace {
   /// CV_8UC3 (BGR), kZonePatchWidth x kZonePatchHeight; on the face mean 128 and standard
   /// deviation 40, whatever the light; grey beside it.
   cv::Mat patch;
-  double slant = 0.0;    ///< rad, between its normal and the line of sight
-  double height_px = 0;  ///< in the camera's picture
+  cv::Mat around;             ///< the same with what is above and below, kTallPatchHeight high
+  double patch_height = 1.0;  ///< px of the patch that the face is high
+  double slant = 0.0;         ///< rad, between its normal and the line of sight
+  double height_px = 0;       ///< in the camera's picture
   /// Its corners there: top left, top right, bottom right, bottom left.
   std::array<Eigen::Vector2d, 4> corners = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(),
                                             Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
@@ -47,12 +49,13 @@ struct ZoneMarkerFace {
 
 /// A zone marker as one camera sees it: the marked part of a pillar, one or two faces in sight.
 struct ZoneMarkerSight {
+  SemanticClass semantic_class = SemanticClass::kZoneMarker;
   Eigen::Vector3d ray_level = Eigen::Vector3d::UnitX();  ///< unit, to the middle; levelled axes
   double sigma = 0.0;                                    ///< rad, of the ray across its direction
   double height_ratio = 0.0;  ///< the marker's height over its horizontal distance
   double height_sigma = 0.0;  ///< of that ratio
   bool cut = false;           ///< by the picture's border or the own car, or covered by a car
-  bool legible = false;       ///< not cut at its sides: its text may be whole
+  bool legible = false;       ///< not cut at its sides, so that its text is whole
   cv::Rect box;               ///< in the label picture
   std::vector<ZoneMarkerFace> faces;  ///< from left to right; those that can be read
   /// The other way to part the outline into faces.

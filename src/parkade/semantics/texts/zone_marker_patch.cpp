@@ -18,12 +18,12 @@ struct PatchPlane {
   double scale = 1.0;  ///< px of the patch per unit
 };
 
-// CV_32F, of the patch's size.
+// CV_32F, of the tall patch's size.
 cv::Mat sampleFace(const cv::Mat& image, const LevelCamera& view, const PatchPlane& plane,
                    double height_px) {
   // Near faces are sampled more finely than the patch, then averaged.
   const int fine = std::clamp(static_cast<int>(std::ceil(height_px / plane.scale)), 1, 4);
-  return sampleTextPatch(image, fine, [&](double u, double v) {
+  return sampleTextPatch(image, kTallPatchHeight, fine, [&](double u, double v) {
     const Eigen::Vector3d p =
         plane.center + u / plane.scale * plane.along - v / plane.scale * Eigen::Vector3d::UnitY();
     Eigen::Vector2d pixel;
@@ -61,9 +61,12 @@ ZoneMarkerFace straighten(const cv::Mat& image, const LevelCamera& view, const F
   cv::Mat sampled = sampleFace(image, view, {center, along, scale}, result.height_px);
   const int half_width = std::clamp(static_cast<int>(0.5 * scale * face.width()), 4, 48);
   const int half_height = std::clamp(static_cast<int>(0.5 * scale), 4, 20);
-  normaliseTextPatch(sampled, {kZonePatchWidth / 2 - half_width, kZonePatchHeight / 2 - half_height,
+  normaliseTextPatch(sampled, {kZonePatchWidth / 2 - half_width, kTallPatchHeight / 2 - half_height,
                                2 * half_width, 2 * half_height});
-  result.patch = sampled;
+  result.around = sampled;
+  result.patch_height = scale;
+  const int first = (kTallPatchHeight - kZonePatchHeight) / 2;
+  result.patch = sampled.rowRange(first, first + kZonePatchHeight);
   return result;
 }
 

@@ -15,13 +15,14 @@ namespace parkade {
 
 /// A marker, or a sign, and what is written on it.
 struct ReadMarker {
-  std::vector<const ZoneMarkerFace*> faces;  ///< of the sight, that show it; none: nothing was read
-  std::vector<TextReading> readings;         ///< best first, by all that is read of it
+  /// The sight's that show it, their corners where it was read; none: nothing was read.
+  std::vector<ZoneMarkerFace> faces;
+  std::vector<TextReading> readings;  ///< best first, by all that is read of it
 };
 
 /// Reads a sight's faces, from the characters `only` (empty: all). Where that leaves a question and
-/// its outline could be parted otherwise, those faces are read too (zone_text_parting.hpp). Fails
-/// as the reader does.
+/// a zone marker's outline could be parted otherwise, those faces are read too, and then what
+/// stands a little above and below them (zone_text_parting.hpp). Fails as the reader does.
 Result<ReadMarker> readMarker(const ZoneMarkerSight& sight, ZoneTextReader& reader,
                               const std::string& only = {});
 

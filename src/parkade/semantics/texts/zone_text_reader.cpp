@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 
@@ -56,10 +57,12 @@ TextNetworkFile parseTextNetwork(const YamlNode& root, const std::string& path) 
 struct ZoneTextReader::Impl {
   TextNetworkFile file;
   cv::dnn::Net net;
+  cv::dnn::Net tall_net;  // the same, for it is slow to change the size of its input
+  bool takes_tall = false;
   cv::Mat input;
 
-  // Logits, one row per letter (and the blank).
-  Result<cv::Mat> forward(const cv::Mat& patch) {
+  // Logits for each patch from the uppermost down, one row per letter (and the blank).
+  Result<std::vector<cv::Mat>> forward(const cv::Mat& patch) {
     const std::array<int, 4> shape{1, 3, patch.rows, patch.cols};
     input.create(4, shape.data(), CV_32F);
     for (int v = 0; v < patch.rows; ++v) {
@@ -71,17 +74,39 @@ struct ZoneTextReader::Impl {
         }
       }
     }
-    Result<cv::Mat> result = runOnnx(net, input, file.network);
+    const bool tall = patch.rows == kTallPatchHeight;
+    Result<cv::Mat> result = runOnnx(tall ? tall_net : net, input, file.network);
     if (!result) return result.error();
     const cv::Mat out = std::move(result).value();
     const int channels = static_cast<int>(file.letters.size()) + 1;
-    if (out.dims != 4 || out.size[1] != channels || out.size[2] != 1) {
-      return Error{fmt::format(
-          "{}: the network's output is {}; expected 1 x {} x 1 x steps numbers: a blank and {} "
-          "letters",
-          file.network, shapeOf(out), channels, file.letters.size())};
+    const int looks = tall ? (kTallPatchHeight - kZonePatchHeight) / kTallPatchStep + 1 : 1;
+    if (out.dims != 4 || out.size[1] != channels || out.size[2] != looks) {
+      return Error{
+          fmt::format("{}: the network's output is {}; expected 1 x {} x {} x steps numbers: a "
+                      "blank and {} letters",
+                      file.network, shapeOf(out), channels, looks, file.letters.size())};
     }
-    return cv::Mat(channels, out.size[3], CV_32F, const_cast<float*>(out.ptr<float>())).clone();
+    std::vector<cv::Mat> logits;
+    for (int k = 0; k < looks; ++k) {
+      cv::Mat rows(channels, out.size[3], CV_32F);
+      for (int c = 0; c < channels; ++c) {
+        const auto* const from = out.ptr<float>(0, c, k);
+        std::copy(from, from + out.size[3], rows.ptr<float>(c));
+      }
+      logits.push_back(rows);
+    }
+    return logits;
+  }
+
+  // Letters that are not asked for are never there.
+  SequenceLikelihood likelihood(cv::Mat logits, const std::string& only) const {
+    constexpr double kNever = -1e4;
+    for (std::size_t i = 0; i < file.letters.size() && !only.empty(); ++i) {
+      if (only.find(file.letters[i]) == std::string::npos) {
+        logits.row(static_cast<int>(i) + 1).setTo(cv::Scalar(kNever));
+      }
+    }
+    return {logits, file.letters};
   }
 };
 
@@ -103,26 +128,48 @@ Result<ZoneTextReader> ZoneTextReader::load(const std::string& path) {
   Result<cv::dnn::Net> net = readOnnx(impl->file.network, path);
   if (!net) return net.error();
   impl->net = std::move(net).value();
-  const Result<cv::Mat> tried =
+  Result<cv::dnn::Net> tall_net = readOnnx(impl->file.network, path);
+  if (!tall_net) return tall_net.error();
+  impl->tall_net = std::move(tall_net).value();
+  const auto tried =
       impl->forward(cv::Mat(kZonePatchHeight, kZonePatchWidth, CV_8UC3, cv::Scalar::all(0)));
   if (!tried) return tried.error();
+  impl->takes_tall = static_cast<bool>(
+      impl->forward(cv::Mat(kTallPatchHeight, kZonePatchWidth, CV_8UC3, cv::Scalar::all(0))));
   return ZoneTextReader(std::move(impl));
+}
+
+Result<SequenceLikelihood> ZoneTextReader::look(const cv::Mat& patch, const std::string& only) {
+  PARKADE_CHECK(
+      patch.type() == CV_8UC3 && patch.cols == kZonePatchWidth && patch.rows == kZonePatchHeight,
+      "patch of {} x {} px, type {}", patch.cols, patch.rows, patch.type());
+  const auto logits = impl_->forward(patch);
+  if (!logits) return logits.error();
+  return impl_->likelihood(logits->front(), only);
+}
+
+Result<std::vector<SequenceLikelihood>> ZoneTextReader::lookAround(const cv::Mat& tall,
+                                                                   const std::string& only) {
+  PARKADE_CHECK(
+      tall.type() == CV_8UC3 && tall.cols == kZonePatchWidth && tall.rows == kTallPatchHeight,
+      "patch of {} x {} px, type {}", tall.cols, tall.rows, tall.type());
+  std::vector<SequenceLikelihood> looks;
+  if (!impl_->takes_tall) return looks;
+  const auto logits = impl_->forward(tall);
+  if (!logits) return logits.error();
+  for (const cv::Mat& each : *logits) looks.push_back(impl_->likelihood(each, only));
+  return looks;
+}
+
+std::vector<TextReading> ZoneTextReader::readingsOf(const SequenceLikelihood& letters) {
+  return letters.best(kBeam, kReadings);
 }
 
 Result<std::vector<TextReading>> ZoneTextReader::read(const cv::Mat& patch,
                                                       const std::string& only) {
-  PARKADE_CHECK(
-      patch.type() == CV_8UC3 && patch.cols == kZonePatchWidth && patch.rows == kZonePatchHeight,
-      "patch of {} x {} px, type {}", patch.cols, patch.rows, patch.type());
-  Result<cv::Mat> logits = impl_->forward(patch);
-  if (!logits) return logits.error();
-  constexpr double kNever = -1e4;
-  for (std::size_t i = 0; i < letters().size() && !only.empty(); ++i) {
-    if (only.find(letters()[i]) == std::string::npos) {
-      logits->row(static_cast<int>(i) + 1).setTo(cv::Scalar(kNever));
-    }
-  }
-  return decodeSequence(*logits, impl_->file.letters, kBeam, kReadings);
+  const Result<SequenceLikelihood> letters = look(patch, only);
+  if (!letters) return letters.error();
+  return readingsOf(*letters);
 }
 
 }  // namespace parkade

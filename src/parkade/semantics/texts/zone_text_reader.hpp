@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "parkade/core/result.hpp"
-#include "parkade/semantics/networks/sequence_decoding.hpp"
+#include "parkade/semantics/networks/sequence_likelihood.hpp"
+#include "parkade/types/text_reading.hpp"
 
 namespace parkade {
 
@@ -32,6 +33,18 @@ class ZoneTextReader {
   /// best first; the empty text says that nothing is written there. only: where given, texts of
   /// these letters alone.
   Result<std::vector<TextReading>> read(const cv::Mat& patch, const std::string& only = {});
+
+  /// All that it says of a patch; of these letters alone, where given.
+  Result<SequenceLikelihood> look(const cv::Mat& patch, const std::string& only = {});
+
+  /// The same for the patches that a tall one holds (CV_8UC3, kZonePatchWidth x kTallPatchHeight,
+  /// checked), from the uppermost down, kTallPatchStep px apart. None where the network does not
+  /// take tall patches: it must be convolutional over its rows.
+  Result<std::vector<SequenceLikelihood>> lookAround(const cv::Mat& tall,
+                                                     const std::string& only = {});
+
+  /// The most probable texts by what it says, best first.
+  static std::vector<TextReading> readingsOf(const SequenceLikelihood& letters);
 
   [[nodiscard]] const std::string& letters() const;
 

@@ -34,9 +34,9 @@ cv::Mat logitsOf(const std::vector<std::vector<float>>& steps) {
 }
 
 // All alignments of two steps over the letters A and B, by hand.
-TEST(SequenceDecoding, SumsOverAllAlignments) {
+TEST(SequenceLikelihood, SumsOverAllAlignments) {
   const cv::Mat logits = logitsOf({{0.5F, 0.3F, 0.2F}, {0.6F, 0.3F, 0.1F}});
-  const auto readings = decodeSequence(logits, "AB", 16, 16);
+  const auto readings = SequenceLikelihood(logits, "AB").best(16, 16);
   double sum = 0.0;
   for (const TextReading& reading : readings) sum += reading.probability;
   EXPECT_NEAR(sum, 1.0, 1e-6);
@@ -47,12 +47,42 @@ TEST(SequenceDecoding, SumsOverAllAlignments) {
   EXPECT_NEAR(readings[1].probability, 0.3, 1e-6);
 }
 
-TEST(SequenceDecoding, ALetterTwiceNeedsABlankBetween) {
+TEST(SequenceLikelihood, ALetterTwiceNeedsABlankBetween) {
   const float low = 1e-4F;
-  const auto once = decodeSequence(logitsOf({{low, 1.0F}, {low, 1.0F}, {low, 1.0F}}), "1", 8, 1);
+  const auto once =
+      SequenceLikelihood(logitsOf({{low, 1.0F}, {low, 1.0F}, {low, 1.0F}}), "1").best(8, 1);
   EXPECT_EQ(once[0].text, "1");
-  const auto twice = decodeSequence(logitsOf({{low, 1.0F}, {1.0F, low}, {low, 1.0F}}), "1", 8, 1);
+  const auto twice =
+      SequenceLikelihood(logitsOf({{low, 1.0F}, {1.0F, low}, {low, 1.0F}}), "1").best(8, 1);
   EXPECT_EQ(twice[0].text, "11");
+}
+
+TEST(SequenceLikelihood, PrefixesHaveTheProbabilityOfAllTheirAlignments) {
+  const SequenceLikelihood two(logitsOf({{0.5F, 0.3F, 0.2F}, {0.6F, 0.3F, 0.1F}}), "AB");
+  const std::vector<double> p = two.ofPrefixes("AB");
+  ASSERT_EQ(p.size(), 3U);
+  EXPECT_NEAR(p[0], 0.3, 1e-6);
+  EXPECT_NEAR(p[1], 0.3 * 0.6 + 0.5 * 0.3 + 0.3 * 0.3, 1e-6);
+  EXPECT_NEAR(p[2], 0.3 * 0.1, 1e-6);
+  EXPECT_EQ(two.ofPrefixes("AA")[2], 0.0);  // no blank fits between
+  EXPECT_EQ(two.ofPrefixes("Z")[1], 0.0);
+  EXPECT_NEAR(two.ofPrefixes(std::string(1, kAnyDigit))[1], 0.0, 1e-12);
+  EXPECT_NEAR(two.ofPrefixes({kAnyCapital, 'B'})[2], (0.3 + 0.2) * 0.1, 1e-6);
+}
+
+TEST(SequenceLikelihood, TheBeamAgreesWithTheSumOverAllAlignments) {
+  Random random(4);
+  const std::string alphabet = "AB1";
+  cv::Mat logits(4, 7, CV_32F);
+  for (int i = 0; i < logits.rows * logits.cols; ++i) {
+    logits.at<float>(i) = static_cast<float>(random.normal(0.0, 2.0));
+  }
+  const SequenceLikelihood likelihood(logits, alphabet);
+  for (const TextReading& reading : likelihood.best(500, 10)) {
+    EXPECT_NEAR(reading.probability, likelihood.ofPrefixes(reading.text).back(),
+                2e-3 + 0.02 * reading.probability)
+        << reading.text;
+  }
 }
 
 /// A YAML file in a folder of its own.
@@ -161,6 +191,25 @@ TEST(ZoneTextReader, ReadsDigitsOnlyWhereToldSo) {
   }
   std::printf("digits alone: %d of %d right, all letters: %d\n", right, kFaces, right_of_all);
   EXPECT_GT(right, right_of_all);
+}
+
+TEST(ZoneTextReader, LooksAroundInATallPatch) {
+  Result<ZoneTextReader> reader = ZoneTextReader::load(kSource + "/models/zone_text.yaml");
+  ASSERT_TRUE(reader) << reader.error().message;
+  Random random(3);
+  int found = 0;
+  constexpr int kFaces = 20;
+  for (int i = 0; i < kFaces; ++i) {
+    cv::Mat tall(kTallPatchHeight, kZonePatchWidth, CV_8UC3, cv::Scalar::all(128));
+    renderedFace("B7", random)
+        .copyTo(tall.rowRange(kTallPatchHeight - kZonePatchHeight, tall.rows));
+    const auto looks = reader->lookAround(tall);
+    ASSERT_TRUE(looks);
+    ASSERT_EQ(looks->size(), 5U);
+    EXPECT_LT(looks->front().ofPrefixes("B7").back(), 0.5);
+    found += looks->back().ofPrefixes("B7").back() > 0.5 ? 1 : 0;
+  }
+  EXPECT_GE(found, kFaces * 3 / 4);
 }
 
 TEST(ZoneTextReader, APlainFaceSaysNothing) {
