@@ -8,7 +8,6 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "parkade/camera/rig.hpp"
@@ -27,18 +26,6 @@ namespace fs = std::filesystem;
 constexpr double kGravity = 9.81;
 constexpr double kGravityTolerance = 0.3;  // bias, scale and latitude of any sane accelerometer
 constexpr double kRateTolerance = 0.05;
-constexpr double kGapSteps = 1.5;
-
-// Rows that a reader would use: all, or what a repair leaves.
-std::vector<std::size_t> usableRows(const std::vector<TimeNs>& t_ns) {
-  if (!checkStamps(t_ns).clean()) {
-    const Result<StampRepair> repair = repairStamps(t_ns);
-    return repair ? repair->rows : std::vector<std::size_t>{};
-  }
-  std::vector<std::size_t> rows(t_ns.size());
-  std::iota(rows.begin(), rows.end(), std::size_t{0});
-  return rows;
-}
 
 double distance(const Trajectory& poses) {
   double length = 0.0;
@@ -129,44 +116,6 @@ void Describer::addRateCheck(const std::string& name, const StreamStatistics& st
       fmt::format("{:.4g} Hz, calibration says {:.4g} Hz", stream.rate_hz, expected_hz));
 }
 
-// The quietest second of an IMU whose rows are in order.
-void findQuietSecond(const std::vector<ImuSample>& samples, const SO3& R_vehicle_imu,
-                     ImuReport& imu) {
-  constexpr std::size_t kMinSamples = 10;
-  constexpr TimeNs kStep = kNsPerSecond / 10;
-  double least = std::numeric_limits<double>::infinity();
-  std::size_t begin = 0;
-  while (begin < samples.size()) {
-    const TimeNs start = samples[begin].t_ns;
-    std::size_t end = begin;
-    Eigen::Vector3d gyro = Eigen::Vector3d::Zero();
-    Eigen::Vector3d accel = Eigen::Vector3d::Zero();
-    while (end < samples.size() && samples[end].t_ns < start + kNsPerSecond) {
-      gyro += samples[end].gyro;
-      accel += samples[end].accel;
-      ++end;
-    }
-    const std::size_t count = end - begin;
-    if (count >= kMinSamples) {
-      gyro /= static_cast<double>(count);
-      accel /= static_cast<double>(count);
-      double squares = 0.0;
-      for (std::size_t i = begin; i < end; ++i) squares += (samples[i].accel - accel).squaredNorm();
-      const double spread = std::sqrt(squares / static_cast<double>(count));
-      if (spread < least) {
-        least = spread;
-        imu.quiet_start_ns = start;
-        imu.quiet_gyro = gyro;
-        imu.quiet_accel_vehicle = R_vehicle_imu * accel;
-        imu.quiet_accel_std = spread;
-        imu.gravity = accel.norm();
-      }
-    }
-    if (end == samples.size()) break;
-    while (begin < samples.size() && samples[begin].t_ns < start + kStep) ++begin;
-  }
-}
-
 void Describer::describeImu() {
   const Result<SensorTable<ImuSample>> table =
       readImuTable(joinPath(sensorFolder(sequence_, "imu0"), "data.csv"));
@@ -178,21 +127,8 @@ void Describer::describeImu() {
   for (const std::size_t row : usableRows(stamps)) samples.push_back(table->rows[row]);
   addStampCheck("imu0", stamps, table->lines, imu.stream);
   if (rig_) addRateCheck("imu0", imu.stream, rig_->imu.rate_hz);
-  if (!samples.empty()) {
-    const auto count = static_cast<double>(samples.size());
-    for (const ImuSample& sample : samples) {
-      imu.gyro_mean += sample.gyro / count;
-      imu.accel_mean += sample.accel / count;
-    }
-    for (const ImuSample& sample : samples) {
-      imu.gyro_std += (sample.gyro - imu.gyro_mean).cwiseAbs2() / count;
-      imu.accel_std += (sample.accel - imu.accel_mean).cwiseAbs2() / count;
-    }
-    imu.gyro_std = imu.gyro_std.cwiseSqrt();
-    imu.accel_std = imu.accel_std.cwiseSqrt();
-    findQuietSecond(samples, rig_ ? rig_->imu.T_vehicle_imu.rotation() : SO3(), imu);
-    judgeImu(imu);
-  }
+  describeSamples(samples, rig_ ? rig_->imu.T_vehicle_imu.rotation() : SO3(), imu);
+  if (!samples.empty()) judgeImu(imu);
   report_.imu = imu;
 }
 
@@ -397,40 +333,6 @@ void Describer::describeSpan() {
 }
 
 }  // namespace
-
-StreamStatistics streamStatistics(const std::vector<TimeNs>& t_ns) {
-  StreamStatistics stream;
-  stream.stamps = checkStamps(t_ns);
-  std::vector<TimeNs> ordered;
-  for (const std::size_t row : usableRows(t_ns)) ordered.push_back(t_ns[row]);
-  stream.count = t_ns.size();
-  if (ordered.empty()) return stream;
-  stream.start_ns = ordered.front();
-  stream.end_ns = ordered.back();
-  const TimeNs median = medianStep(ordered);
-  if (median <= 0) return stream;
-  stream.rate_hz = 1.0 / toSeconds(median);
-  double sum = 0.0;
-  double squares = 0.0;
-  std::size_t count = 0;
-  for (std::size_t i = 1; i < ordered.size(); ++i) {
-    const double step_ms = toSeconds(ordered[i] - ordered[i - 1]) * 1e3;
-    const double median_ms = toSeconds(median) * 1e3;
-    if (step_ms > kGapSteps * median_ms) {
-      ++stream.gaps;
-      stream.largest_gap_ms = std::max(stream.largest_gap_ms, step_ms);
-      continue;
-    }
-    sum += step_ms - median_ms;
-    squares += (step_ms - median_ms) * (step_ms - median_ms);
-    ++count;
-  }
-  if (count > 0) {
-    const double mean = sum / static_cast<double>(count);
-    stream.jitter_ms = std::sqrt(std::max(0.0, squares / static_cast<double>(count) - mean * mean));
-  }
-  return stream;
-}
 
 bool SequenceReport::failed() const {
   return std::any_of(checks.begin(), checks.end(),

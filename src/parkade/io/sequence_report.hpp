@@ -10,7 +10,8 @@
 
 #include "parkade/core/progress.hpp"
 #include "parkade/core/result.hpp"
-#include "parkade/io/stamps.hpp"
+#include "parkade/io/imu_report.hpp"
+#include "parkade/io/stream_statistics.hpp"
 
 namespace parkade {
 
@@ -23,19 +24,6 @@ struct SequenceCheck {
   std::string detail;
 };
 
-/// Timing of one sensor. Steps are taken between rows in the order of time (after repair, where the
-/// stamps need it).
-struct StreamStatistics {
-  std::size_t count = 0;
-  TimeNs start_ns = 0;
-  TimeNs end_ns = 0;
-  double rate_hz = 0.0;         ///< 1 / median step
-  double jitter_ms = 0.0;       ///< standard deviation of the steps that are no gaps
-  std::size_t gaps = 0;         ///< steps above 1.5 median steps
-  double largest_gap_ms = 0.0;  ///< largest step; 0 where there is no gap
-  StampReport stamps;
-};
-
 struct CameraReport {
   std::string name;
   std::string model;
@@ -44,20 +32,6 @@ struct CameraReport {
   StreamStatistics stream;     ///< stamps on the IMU's clock
   std::size_t missing = 0;     ///< listed files that are absent
   std::size_t unreadable = 0;  ///< with decode_images: of those present
-};
-
-struct ImuReport {
-  StreamStatistics stream;
-  Eigen::Vector3d gyro_mean = Eigen::Vector3d::Zero();
-  Eigen::Vector3d gyro_std = Eigen::Vector3d::Zero();
-  Eigen::Vector3d accel_mean = Eigen::Vector3d::Zero();
-  Eigen::Vector3d accel_std = Eigen::Vector3d::Zero();
-  /// The quietest second (least spread of the accelerometer).
-  TimeNs quiet_start_ns = 0;
-  Eigen::Vector3d quiet_gyro = Eigen::Vector3d::Zero();           ///< mean, imu frame, rad/s
-  Eigen::Vector3d quiet_accel_vehicle = Eigen::Vector3d::Zero();  ///< mean, vehicle frame, m/s^2
-  double quiet_accel_std = 0.0;                                   ///< m/s^2
-  double gravity = 0.0;                                           ///< norm of that mean, m/s^2
 };
 
 struct WheelReport {
@@ -105,8 +79,5 @@ Result<SequenceReport> describeSequence(const std::string& path,
 /// For a reader at a terminal, and the same for programs.
 std::string sequenceText(const SequenceReport& report);
 nlohmann::json sequenceJson(const SequenceReport& report);
-
-/// Timing of stamps in the order of a file.
-StreamStatistics streamStatistics(const std::vector<TimeNs>& t_ns);
 
 }  // namespace parkade
