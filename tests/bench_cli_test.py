@@ -58,17 +58,23 @@ class BenchErrorTest(unittest.TestCase):
 
     def test_wrong_options_are_named(self):
         for arguments, code, words in [
-            ([], 1, ["--out"]),
-            (["--out", self.out, "--methods", "vis,magic"], 1, ["magic", "fused"]),
-            (["--out", self.out, "--routes", "test9"], 1, ["test9", "test1"]),
-            (["--out", self.out, "--garages", "castle"], 1, ["castle", "random:N"]),
-            (["--out", self.out, "--light", "bright"], 1, ["--light", "bright"]),
-            (["--out", self.out, "--occupancy", "60"], 1, ["--occupancy", "between 0 and 1"]),
-            (["--out", self.out, "--agents", "3"], 1, ["CARS:PEOPLE", "'3'"]),
-            (["--out", self.out, "--calib-error", "0.1:1:2"], 1, ["DEG:CM", "'0.1:1:2'"]),
-            (["--out", self.out, "--cameras", "6"], 1, ["1..6"]),
-            (["--out", self.out, "--variant", "fused"], 1, ["NAME="]),
-            (["--out", self.out, "--variant", "vis=fused"], 1, ["'vis'"]),
+            ([], 2, ["--out"]),
+            (["--out", self.out, "--methods", "vis,magic"], 2, ["magic", "fused"]),
+            (["--out", self.out, "--routes", "test9"], 2, ["test9", "test1"]),
+            (["--out", self.out, "--garages", "castle"], 2, ["castle", "random:N"]),
+            (["--out", self.out, "--light", "bright"], 2, ["--light", "bright"]),
+            (["--out", self.out, "--occupancy", "60"], 2, ["--occupancy", "between 0 and 1"]),
+            (["--out", self.out, "--agents", "3"], 2, ["CARS:PEOPLE", "'3'"]),
+            (["--out", self.out, "--calib-error", "0.1:1:2"], 2, ["DEG:CM", "'0.1:1:2'"]),
+            (["--out", self.out, "--cameras", "6"], 2, ["1..6"]),
+            (["--out", self.out, "--variant", "fused"], 2, ["NAME="]),
+            (["--out", self.out, "--variant", "vis=fused"], 2, ["'vis'"]),
+            (["--out", self.out, "--light", "0"], 2, ["--light", "5000"]),
+            (["--out", self.out, "--variant", "a=magic"], 2, ["magic", "fused"]),
+            (["--out", self.out, "--variant", "a=fused,foo=3"], 2, ["a:", "foo"]),
+            (["--out", self.out, "--set", "vio.window.keyframes=800"], 2, ["keyframes", "800"]),
+            (["--out", self.out, "--import", "a=nowhere"], 2, ["nowhere", "no such folder"]),
+            (["--out", self.out, "--duration", "-1"], 2, ["a number of 0 or more", "'-1'"]),
             (["--out", self.out, "--seeds", "0"], 2, ["--seeds"]),
             (["nonsense", "--out", self.out], 2, ["nonsense"]),
         ]:
@@ -86,7 +92,7 @@ class BenchErrorTest(unittest.TestCase):
 
     def test_texts_to_learn_reading_from(self):
         result = bench("semantics", "--out", self.out, "--texts")
-        self.assertEqual(result.returncode, 1)
+        self.assertEqual(result.returncode, 2)
         self.assertIn("--texts needs --samples", result.stderr)
         result = bench("semantics", "--garages", "random:2140-2140", "--samples", self.out, "--texts",
                        "--fast", "--set", "frames=2", "--set", "coarse_light=true")
@@ -103,7 +109,7 @@ class BenchErrorTest(unittest.TestCase):
 
     def test_slot_trials(self):
         result = bench("semantics", "--samples", self.out, "--slot-trials")
-        self.assertEqual(result.returncode, 1)
+        self.assertEqual(result.returncode, 2)
         self.assertIn("--slot-trials goes with --out", result.stderr)
         result = bench("semantics", "--garages", "random:440-440", "--out", self.out, "--slot-trials",
                        "--labels", "truth", "--fast", "--set", "frames=3", "--set", "coarse_light=true")

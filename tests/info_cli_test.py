@@ -32,7 +32,7 @@ class InfoTest(unittest.TestCase):
     def test_help_shows_an_example(self):
         result = info("--help")
         self.assertEqual(result.returncode, 0)
-        self.assertIn("Example:", result.stdout)
+        self.assertIn("Examples:", result.stdout)
 
     def test_rig(self):
         out = self.folder / "rig.json"

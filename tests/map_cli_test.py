@@ -16,10 +16,14 @@ import unittest
 PARKADE, SAMPLE_MAP = sys.argv.pop(1), sys.argv.pop(1)
 
 
-def parkade_map(*arguments):
+def parkade(*arguments):
     return subprocess.run(
-        [PARKADE, "map", *map(str, arguments)], capture_output=True, text=True, timeout=120
+        [PARKADE, *map(str, arguments)], capture_output=True, text=True, timeout=120
     )
+
+
+def parkade_map(*arguments):
+    return parkade("map", *arguments)
 
 
 class MapTest(unittest.TestCase):
@@ -38,6 +42,9 @@ class MapTest(unittest.TestCase):
         result = parkade_map("--help")
         self.assertEqual(result.returncode, 0)
         self.assertIn("Examples:", result.stdout)
+        for action in ("info", "check", "export", "merge"):
+            text = parkade_map(action, "--help").stdout
+            self.assertIn(f"Example:\n  parkade map {action} ", text)
         self.assertEqual(parkade_map().returncode, 2)
         self.assertEqual(parkade_map("export", self.map).returncode, 2)
 
@@ -51,6 +58,26 @@ class MapTest(unittest.TestCase):
         self.assertEqual(description["objects"], {"arrow": 1, "zone_marker": 1})
         self.assertGreater(description["layers"]["parking_lines"]["known_m2"], 0.5)
 
+    def test_parkade_info_says_the_same(self):
+        out = self.folder / "info.json"
+        said = parkade_map("info", self.map).stdout
+        for path in (self.map, self.folder):
+            result = parkade("info", path, "--json", out)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual(result.stdout, said)
+            self.assertEqual(json.loads(out.read_text(encoding="utf-8"))["slots"]["count"], 6)
+        self.map.write_bytes(b"SQLite format 3\0 and nothing else")
+        copy = self.folder / "map.sqlite"
+        shutil.copy(self.map, copy)
+        for path, named in ((self.map, self.map), (copy, copy), (self.folder, self.map)):
+            result = parkade("info", path)
+            self.assertEqual(result.returncode, 1)
+            self.assertIn(f"parkade: {named}: ", result.stderr)
+            self.assertIn("file is not a database", result.stderr)
+        self.map.unlink()
+        self.assertIn("there is no such map file", parkade("info", self.map).stderr)
+        self.assertIn("not a sequence", parkade("info", self.folder).stderr)
+
     def test_check_finds_what_loads_and_is_wrong(self):
         result = parkade_map("check", self.map)
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -60,6 +87,32 @@ class MapTest(unittest.TestCase):
         self.assertEqual(result.returncode, 1)
         self.assertIn("slots 10 and 11: 100 %", result.stdout)
         self.assertIn("1 fault", result.stderr)
+
+    def test_check_finds_what_lies_too_far_away(self):
+        self.change("UPDATE node SET px = 1e30 WHERE id = 3")
+        self.change("UPDATE object SET position_sigma = -5 WHERE id = 4")
+        self.change("UPDATE edge SET to_id = 1 WHERE to_id = 2")
+        self.change("UPDATE tile SET x = 100000 WHERE layer = 0 AND x = 0 AND y = 0")
+        result = parkade_map("check", self.map)
+        self.assertEqual(result.returncode, 1)
+        for words in (
+            "tile (100000, 0) of layer parking_lines: lies at (320000, 0) m",
+            "object 4: position_sigma of -5 m",
+            "node 3: lies at (1e+30, ",
+            "edge 1 to 1: joins a node to itself",
+        ):
+            self.assertIn(words, result.stdout)
+        self.assertIn("4 faults", result.stderr)
+
+    def test_a_run_folder_stands_for_its_map(self):
+        out = self.folder / "out"
+        for arguments in (("info",), ("check",), ("export", "--out", out)):
+            result = parkade_map(arguments[0], self.folder, *arguments[1:])
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn(str(self.map), result.stdout)
+        result = parkade_map("merge", self.folder, self.folder, "--out", self.folder)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn(f"{self.map}: 6 slots", result.stdout)
 
     def test_merge(self):
         later = self.folder / "later.db"
@@ -85,7 +138,7 @@ class MapTest(unittest.TestCase):
             extra = ("--out", self.folder / "x") if action == "export" else ()
             result = parkade_map(action, self.map, *extra)
             self.assertEqual(result.returncode, 1)
-            self.assertIn("slot 12: probability 7", result.stderr)
+            self.assertIn("slot 12: probability_free is 7", result.stderr)
             self.assertIn("map.db", result.stderr)
         text = self.folder / "letter.txt"
         text.write_text("Dear reader, this is no map. " * 100, encoding="utf-8")
@@ -94,7 +147,9 @@ class MapTest(unittest.TestCase):
             database.execute("CREATE TABLE t (a)")
         empty = self.folder / "empty.db"
         empty.write_bytes(b"")
-        for path in (text, other, empty, self.folder / "none.db", self.folder):
+        bare = self.folder / "bare"  # a folder without a map
+        bare.mkdir()
+        for path in (text, other, empty, self.folder / "none.db", bare):
             result = parkade_map("info", path)
             self.assertEqual(result.returncode, 1, path)
             self.assertIn(str(path), result.stderr)
@@ -114,6 +169,21 @@ class MapTest(unittest.TestCase):
         png = (out / "map.png").read_bytes()
         self.assertEqual(png[:4], b"\x89PNG")
         self.assertGreater(struct.unpack(">I", png[16:20])[0], 100)
+        # What cannot be exported is said before anything is written.
+        none = self.folder / "none"
+        self.change("UPDATE slot SET x1=60000, x2=60000 WHERE id = 15")
+        result = parkade_map("export", self.map, "--out", none)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn(f"{self.map}: png: the map's picture would have", result.stderr)
+        self.assertIn("take --metres-per-px", result.stderr)
+        self.assertFalse(none.exists())
+        self.change("UPDATE tile SET x = 1000000 WHERE layer = 0 AND x = 0 AND y = 0")
+        result = parkade_map("export", self.map, "--out", none)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn(f"{self.map}: nav2: the map's picture would have", result.stderr)
+        self.assertFalse(none.exists())
+
+    def test_export_of_some_formats(self):
         few = self.folder / "few"
         self.assertEqual(
             parkade_map("export", self.map, "--out", few, "--format", "png,lanelet2").returncode, 0

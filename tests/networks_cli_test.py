@@ -60,6 +60,29 @@ class NetworksTest(unittest.TestCase):
         self.assertEqual(result.returncode, 1)
         self.assertIn("48 x 32 px", result.stderr)
 
+    def test_makes_no_folder_in_vain_and_writes_over_nothing(self):
+        for arguments in [
+            ["--overlay", "--network", self.folder / "none.yaml"],
+            ["--network", NETWORKS / "bright.yaml"],  # without --overlay
+            ["--image", "cam9=nothing.png"],
+            ["--set", "width_px=many"],
+        ]:
+            result = self.bev("vain", *arguments)
+            self.assertNotEqual(result.returncode, 0)
+            self.assertFalse((self.folder / "vain").exists(), arguments)
+        result = parkade("bev", self.folder / "nowhere", "--out", self.folder / "vain")
+        self.assertEqual(result.returncode, 1)
+        self.assertFalse((self.folder / "vain").exists())
+        foreign = self.folder / "foreign"
+        foreign.mkdir()
+        (foreign / "thesis.tex").write_text("years of work", encoding="utf-8")
+        result = self.bev("foreign")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("--force", result.stderr)
+        self.assertEqual([p.name for p in foreign.iterdir()], ["thesis.tex"])
+        self.assertEqual(self.bev("foreign", "--force").returncode, 0)
+        self.assertEqual(len(list(foreign.iterdir())), 2)
+
     def test_bench_scores_and_writes_metrics(self):
         out = self.folder / "bench"
         result = parkade(
@@ -107,7 +130,7 @@ class NetworksTest(unittest.TestCase):
     def test_wrong_garages(self):
         for text in ("random", "paper", "random:0", "random:9-3", "random:x"):
             result = parkade("bench", "semantics", "--garages", text, "--out", self.folder / "x")
-            self.assertEqual(result.returncode, 1, text)
+            self.assertEqual(result.returncode, 2, text)
             self.assertIn("random:FIRST-LAST", result.stderr)
 
 

@@ -7,6 +7,8 @@ import csv
 import json
 import os
 import pathlib
+import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -26,6 +28,26 @@ def parkade(*arguments):
     )
 
 
+CONFIG = "# Effective configuration of 'parkade run'; --config reads it.\n"
+
+
+def old_run(folder):
+    """What an earlier run left, and a note of its user."""
+    (folder / "map").mkdir(parents=True)
+    (folder / "config.yaml").write_text(CONFIG, encoding="utf-8")
+    for name in ["trajectory.tum", "map.db", "map/map.png", "notes.txt"]:
+        (folder / name).write_text("old " + name, encoding="utf-8")
+    return contents(folder)
+
+
+def contents(folder):
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    }
+
+
 class RunErrorTest(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="parkade_run_")
@@ -43,6 +65,50 @@ class RunErrorTest(unittest.TestCase):
         missing = self.folder / "nowhere"
         self.expect_failure(1, str(missing), arguments=[missing, "--out", self.out])
         self.assertFalse(self.out.exists(), "a run that cannot start makes no folder")
+
+    def test_results_are_replaced_with_force_only(self):
+        before = old_run(self.out)
+        missing = self.folder / "nowhere"
+        self.expect_failure(
+            1, "holds the results", "--force", str(self.out), arguments=[missing, "--out", self.out]
+        )
+        # With it, they stay until there are others.
+        self.expect_failure(
+            1, str(missing), arguments=[missing, "--out", self.out, "--force"]
+        )
+        self.assertEqual(contents(self.out), before)
+
+    def test_the_folder_of_a_stopped_run_will_do(self):
+        self.out.mkdir()
+        (self.out / "config.yaml").write_text(CONFIG, encoding="utf-8")
+        missing = self.folder / "nowhere"
+        self.expect_failure(1, str(missing), arguments=[missing, "--out", self.out])
+
+    def test_the_map_that_is_read_is_not_replaced(self):
+        before = old_run(self.out)
+        os.symlink(self.out, self.folder / "link")
+        for out in [self.out, self.folder / "link"]:
+            for map_path in [self.out, self.out / "map.db"]:
+                self.expect_failure(
+                    1, "--map", "take another --out",
+                    arguments=[".", "--method", "fused", "--out", out, "--map", map_path, "--force"],
+                )  # fmt: skip
+        self.assertEqual(contents(self.out), before)
+
+    def test_bad_numbers_and_camera_lists_are_wrong_usage(self):
+        for option, value in [
+            ("--duration", "nan"),
+            ("--duration", "-1"),
+            ("--start", "inf"),
+            ("--cameras", ","),
+            ("--cameras", ""),
+            ("--cameras", "cam0,"),
+        ]:
+            with self.subTest(option=option, value=value):
+                self.expect_failure(
+                    2, option, f"'{value}'", arguments=[".", "--out", self.out, option, value]
+                )
+        self.assertFalse(self.out.exists())
 
     def test_unknown_flag_is_wrong_usage(self):
         self.expect_failure(2, "--speed", arguments=[".", "--out", self.out, "--speed", "9"])
@@ -71,7 +137,8 @@ class RunErrorTest(unittest.TestCase):
 
     def test_help_documents_options(self):
         text = parkade("run", "--help").stdout
-        for word in ["--method", "--cameras", "--debug-images", "--threads", "parkade run SEQ"]:
+        for word in ["--method", "--cameras", "--debug-images", "--threads", "parkade run SEQ",
+                     "map.db", "map/", "covariance.csv", "pictures/"]:
             self.assertIn(word, text)
         options = parkade("run", "--help-options")
         self.assertEqual(options.returncode, 0)
@@ -165,8 +232,71 @@ class RunEurocTest(unittest.TestCase):
             out = self.folder / method
             result = parkade("run", EUROC, "--out", out, "--method", method, "--duration", 7)
             self.assertEqual(result.returncode, 1)
-            self.assertIn("no pose", result.stderr)
-            self.assertIn("no wheel speed", (out / "health.csv").read_text(encoding="utf-8"))
+            for word in [f"--method {method} needs wheel speeds", "wheel0", "fused"]:
+                self.assertIn(word, result.stderr)
+            self.assertFalse(out.exists())
+
+    def test_says_when_the_pictures_begin(self):
+        result = parkade("run", EUROC, "--out", self.folder / "x", "--duration", 3)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("has pictures from 3.9", result.stderr)
+        self.assertFalse((self.folder / "x").exists())
+
+    def test_a_bad_folder_for_pictures_is_told_before_the_run(self):
+        file = self.folder / "file"
+        file.write_text("no folder", encoding="utf-8")
+        out = self.folder / "undrawn"
+        for pictures in [file, file / "below", "/proc/nowhere"]:
+            result = parkade("run", EUROC, "--out", out, "--debug-images", pictures)
+            self.assertEqual(result.returncode, 1)
+            self.assertIn(str(pictures), result.stderr)
+            self.assertNotIn("run done", result.stderr)
+            self.assertFalse(out.exists())
+
+    def test_without_pictures_nothing_is_written_and_the_message_says_why(self):
+        blind = self.folder / "blind"
+        shutil.copytree(EUROC, blind, ignore=shutil.ignore_patterns("*.png", "*.jpg"))
+        out = self.folder / "unseen"
+        before = old_run(out)
+        result = parkade("run", blind, "--out", out, "--force")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("pictures are missing or cannot be read", result.stderr)
+        self.assertNotIn("health.csv", result.stderr)
+        self.assertEqual(contents(out), before)
+
+    def test_force_replaces_a_run_whole_and_keeps_what_is_not_a_runs(self):
+        out = self.folder / "replaced"
+        old_run(out)
+        result = parkade("run", EUROC, "--out", out, "--duration", 5, "--force")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        now = contents(out)
+        self.assertFalse((out / "map").exists())
+        self.assertNotIn("map.db", now)
+        self.assertEqual(now["notes.txt"], b"old notes.txt")
+        self.assertNotEqual(now["trajectory.tum"], b"old trajectory.tum")
+        self.assertIn(b"source:", now["config.yaml"])
+
+    def interrupt(self, out, *more):
+        process = subprocess.Popen(
+            [PARKADE, "run", EUROC, "--out", out, "--real-time", *more],
+            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+        )  # fmt: skip
+        # The run itself has begun when it tells its progress.
+        process.stderr.readline()
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        self.assertNotEqual(process.returncode, 0)
+
+    def test_a_run_that_is_stopped_leaves_old_results_or_a_folder_to_run_into(self):
+        old = self.folder / "old"
+        before = old_run(old)
+        self.interrupt(old, "--force")
+        self.assertEqual(contents(old), before)
+        fresh = self.folder / "fresh"
+        self.interrupt(fresh)
+        self.assertEqual(list(contents(fresh)), ["config.yaml"])
+        again = parkade("run", EUROC, "--out", fresh, "--duration", 5)
+        self.assertEqual(again.returncode, 0, again.stderr)
 
     def test_fused_writes_a_map_and_the_same_bytes_on_any_number_of_threads(self):
         runs = []

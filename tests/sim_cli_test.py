@@ -91,16 +91,16 @@ class SimTest(unittest.TestCase):
 
     def test_wrong_options_are_named(self):
         for arguments, code, words in [
-            (["--lux", "0"], 1, ["lux", "1", "5000"]),
-            (["--lux", "bright"], 1, ["lux", "bright"]),
-            (["--route", "test9"], 1, ["test9", "test1"]),
-            (["--garage", "castle"], 1, ["castle", "paper"]),
-            (["--rig", "nosuch"], 1, ["nosuch"]),
-            (["--occupancy", "1.5"], 1, ["occupancy", "1.5"]),
-            (["--duration", "-1"], 1, ["duration"]),
-            (["--one-way", "0.5"], 1, ["one_way", "paper"]),
-            (["--garage", "random", "--one-way", "2"], 1, ["one_way", "2"]),
-            (["--garage", "random", "--first-zone", "I"], 1, ["first_zone", "'I'"]),
+            (["--lux", "0"], 2, ["lux", "1", "5000"]),
+            (["--lux", "bright"], 2, ["lux", "bright"]),
+            (["--route", "test9"], 2, ["test9", "test1"]),
+            (["--garage", "castle"], 2, ["castle", "paper"]),
+            (["--rig", "nosuch"], 2, ["nosuch"]),
+            (["--occupancy", "1.5"], 2, ["occupancy", "1.5"]),
+            (["--duration", "-1"], 2, ["duration"]),
+            (["--one-way", "0.5"], 2, ["one_way", "paper"]),
+            (["--garage", "random", "--one-way", "2"], 2, ["one_way", "2"]),
+            (["--garage", "random", "--first-zone", "I"], 2, ["first_zone", "'I'"]),
             (["--agents", "3"], 2, ["--agents", "comma"]),
             (["--colour", "red"], 2, ["--colour"]),
         ]:
@@ -109,7 +109,7 @@ class SimTest(unittest.TestCase):
                 self.assertFalse(self.out.exists(), "what cannot start makes no folder")
 
     def test_missing_out_is_asked_for(self):
-        self.expect_failure(1, "--out", arguments=["--route", "test1"])
+        self.expect_failure(2, "--out", arguments=["--route", "test1"])
 
     def test_foreign_folder_is_left_alone(self):
         self.out.mkdir()

@@ -17,8 +17,7 @@ void addBenchCommand(CLI::App& app, int& exit_code) {
   addBenchSemantics(*bench, exit_code);
   bench->callback([bench, options, what, &exit_code] {
     if (!bench->get_subcommands().empty()) return;
-    const Status status = runPaperBench(*options);
-    if (!status) exit_code = fail(status.error());
+    exit_code = runPaperBench(*options);
   });
 }
 

@@ -101,6 +101,9 @@ Status addConditions(const PaperBenchOptions& options, const BenchDrive& base,
   Status status = sweep(
       "--light", options.light, base,
       [](double lux, BenchDrive& drive) -> Status {
+        if (!(lux >= 1.0 && lux <= 5000.0)) {
+          return Error{fmt::format("bench: --light {:g}: lights lie between 1 and 5000 lux", lux)};
+        }
         drive.spec.lux = lux;
         drive.condition = fmt::format("{:g} lux", lux);
         drive.name += fmt::format("_lux{:g}", lux);

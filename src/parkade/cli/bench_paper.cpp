@@ -11,6 +11,7 @@
 #include "parkade/cli/bench_recording.hpp"
 #include "parkade/cli/bench_report.hpp"
 #include "parkade/cli/bench_runs.hpp"
+#include "parkade/cli/number_checks.hpp"
 #include "parkade/cli/sim_record.hpp"
 #include "parkade/io/file.hpp"
 
@@ -178,18 +179,20 @@ Status writeAll(const PaperBenchOptions& options, const BenchPlan& plan,
 
 }  // namespace
 
-Status runPaperBench(PaperBenchOptions options) {
-  if (options.out.empty()) return Error{"bench: --out DIR is missing: where shall the results go?"};
+int runPaperBench(PaperBenchOptions options) {
+  if (options.out.empty()) {
+    return failUsage({"bench: --out DIR is missing: where shall the results go?"});
+  }
   if (options.quick) makeQuick(options);
   const Result<BenchPlan> plan = planBench(options);
-  if (!plan) return plan.error();
-  if (Status made = makeFolders(options.out); !made) return made;
+  if (!plan) return failUsage(plan.error());
+  if (Status made = makeFolders(options.out); !made) return fail(made.error());
   const std::vector<JudgedRun> runs = performAll(options, *plan);
-  if (Status written = writeAll(options, *plan, runs); !written) return written;
+  if (Status written = writeAll(options, *plan, runs); !written) return fail(written.error());
   std::size_t failed = 0;
   for (const JudgedRun& run : runs) failed += run.record.failed ? 1 : 0;
-  if (failed == 0) return {};
-  return Error{fmt::format("bench: {} of {} runs failed: see the tables", failed, runs.size())};
+  if (failed == 0) return 0;
+  return fail({fmt::format("bench: {} of {} runs failed: see the tables", failed, runs.size())});
 }
 
 std::shared_ptr<PaperBenchOptions> addPaperBenchOptions(CLI::App& bench) {
@@ -211,7 +214,7 @@ std::shared_ptr<PaperBenchOptions> addPaperBenchOptions(CLI::App& bench) {
   bench.add_flag("--fast", o->fast, "One sample per pixel instead of 2 x 2");
   bench.add_option("--duration", o->duration_s, "Cut every drive after S seconds; 0: whole")
       ->type_name("S")
-      ->check(CLI::NonNegativeNumber);
+      ->check(notNegative());
   bench
       .add_option("--sequences", o->sequences,
                   "Use recordings found here as test1, test2_seed2, random_5000, ...")

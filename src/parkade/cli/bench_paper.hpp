@@ -13,7 +13,8 @@ namespace parkade::cli {
 std::shared_ptr<PaperBenchOptions> addPaperBenchOptions(CLI::App& bench);
 
 /// Renders what is missing, runs, judges, and writes OUT/tables.md, metrics.json and report.html.
-/// Fails where a run or a recording failed (the tables are written all the same).
-Status runPaperBench(PaperBenchOptions options);
+/// Returns the exit code, 1 also where a run or a recording failed (the tables are written all the
+/// same). What can be known to be wrong before anything is drawn is.
+int runPaperBench(PaperBenchOptions options);
 
 }  // namespace parkade::cli

@@ -3,12 +3,16 @@
 #include "parkade/cli/bench_plan.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "parkade/cli/bench_conditions.hpp"
 #include "parkade/cli/semantic_garages.hpp"
+#include "parkade/core/options.hpp"
 #include "parkade/core/split.hpp"
+#include "parkade/pipeline/mapping_run.hpp"
 
 namespace parkade::cli {
 namespace {
@@ -119,6 +123,30 @@ Status addOwn(const PaperBenchOptions& options, BenchPlan& plan) {
   return {};
 }
 
+// What a run would refuse, before anything is drawn.
+Status checkVariants(const BenchPlan& plan) {
+  static const std::vector<std::string> kMethods = {"vis", "semantic", "avp-slam", "fused"};
+  for (const BenchVariant& variant : plan.variants) {
+    const std::string& name = variant.method.name;
+    if (!variant.import_folder.empty()) {
+      std::error_code code;
+      if (std::filesystem::is_directory(variant.import_folder, code)) continue;
+      return Error{
+          fmt::format("bench: --import {}={}: no such folder", name, variant.import_folder)};
+    }
+    if (std::find(kMethods.begin(), kMethods.end(), variant.run_method) == kMethods.end()) {
+      return Error{fmt::format("bench: --variant {}={}: no such method; known are {}", name,
+                               variant.run_method, fmt::join(kMethods, ", "))};
+    }
+    PipelineOptions options;
+    for (const std::string& setting : variant.settings) {
+      const Status set = setOption(asOptions(options), setting);
+      if (!set) return Error{fmt::format("bench: {}: {}", name, set.error().message)};
+    }
+  }
+  return {};
+}
+
 // Drives of one garage and route under every condition, with every seed.
 Status addDrives(const PaperBenchOptions& options, const BenchDrive& base, BenchPlan& plan) {
   std::vector<BenchDrive> kinds{base};
@@ -171,6 +199,7 @@ Result<BenchPlan> planBench(const PaperBenchOptions& options) {
   BenchPlan plan;
   Status status = addKnown(options, plan);
   if (status) status = addOwn(options, plan);
+  if (status) status = checkVariants(plan);
   if (status) {
     status = options.garages == "paper" ? addPaperGarage(options, plan)
                                         : addRandomGarages(options, plan);

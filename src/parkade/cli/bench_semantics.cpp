@@ -217,10 +217,10 @@ Status score(const BenchArguments& arguments, const std::vector<int>& seeds) {
 int run(BenchArguments& arguments) {
   for (const std::string& setting : arguments.settings) {
     const Status status = setOption(asOptions(arguments.options), setting);
-    if (!status) return fail(status.error());
+    if (!status) return failUsage(status.error());
   }
   if (arguments.slot_trials && !(arguments.samples.empty() && arguments.marking_points.empty())) {
-    return fail(
+    return failUsage(
         {"bench semantics: --slot-trials goes with --out DIR, not with --samples or "
          "--marking-points"});
   }
@@ -233,15 +233,16 @@ int run(BenchArguments& arguments) {
     return status ? 0 : fail(status.error());
   }
   const Result<std::vector<int>> seeds = parseGarages(arguments.garages);
-  if (!seeds) return fail(seeds.error());
+  if (!seeds) return failUsage(seeds.error());
   if (arguments.out.empty() == arguments.samples.empty()) {
-    return fail({"bench semantics: give --out DIR for scores, or --samples DIR for training data"});
+    return failUsage(
+        {"bench semantics: give --out DIR for scores, or --samples DIR for training data"});
   }
   if (arguments.texts && arguments.samples.empty()) {
-    return fail({"bench semantics: --texts needs --samples DIR"});
+    return failUsage({"bench semantics: --texts needs --samples DIR"});
   }
   if (!arguments.options.stitched && arguments.samples.empty()) {
-    return fail({"bench semantics: stitched=false serves --samples alone"});
+    return failUsage({"bench semantics: stitched=false serves --samples alone"});
   }
   if (arguments.texts) arguments.options.stitched = false;
   const Status status =

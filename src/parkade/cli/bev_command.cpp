@@ -8,7 +8,9 @@
 
 #include "parkade/bev/stitcher.hpp"
 #include "parkade/cli/command.hpp"
+#include "parkade/cli/number_checks.hpp"
 #include "parkade/cli/open_source.hpp"
+#include "parkade/cli/output_folder.hpp"
 #include "parkade/core/progress.hpp"
 #include "parkade/io/image_file.hpp"
 #include "parkade/pipeline/stitched_views.hpp"
@@ -34,6 +36,7 @@ struct BevArguments {
   double duration_s = 0.0;
   int every = 1;
   bool overlay = false;
+  bool force = false;
   std::string network;  // class map
   std::vector<std::string> settings;
   BevOptions options;
@@ -46,14 +49,16 @@ constexpr const char* kBevFooter =
     "\n"
     "Examples:\n"
     "  parkade bev SEQ --out DIR --every 10\n"
-    "  parkade bev SEQ --out DIR --overlay\n"
-    "  parkade bev SEQ --out DIR --set width_px=800 --set height_px=800 --set metres_per_px=0.02\n"
+    "  parkade bev SEQ --out SEEN --overlay\n"
+    "  parkade bev SEQ --out LARGE --set width_px=800 --set height_px=800 --set "
+    "metres_per_px=0.02\n"
     "  parkade bev --rig config/rigs/garage_fisheye_sim.yaml --image cam0=0.png \\\n"
-    "      --image cam1=1.png --image cam2=2.png --image cam3=3.png --out DIR";
+    "      --image cam1=1.png --image cam2=2.png --image cam3=3.png --out ONE";
 
 /// Writes pictures as they are, or with what the network sees laid over.
 class BevWriter {
  public:
+  /// Makes no folder: begin() does, when nothing else can go wrong before.
   static Result<BevWriter> make(const BevArguments& arguments) {
     BevWriter writer;
     writer.folder_ = arguments.out;
@@ -70,6 +75,8 @@ class BevWriter {
     views_ = viewsOf(stitcher, rig);
     objects_ = std::make_shared<ObjectExtractor>(stitcher.geometry(), views_);
   }
+
+  [[nodiscard]] Status begin() const { return makeWritable(folder_); }
 
   Status write(const BevImage& bev) const {
     cv::Mat picture = bev.image;
@@ -142,6 +149,7 @@ Status stitchSingle(const BevArguments& arguments) {
   if (!writer) return writer.error();
   BevStitcher stitcher(*rig, arguments.options);
   writer->setViews(stitcher, *rig);
+  if (Status begun = writer->begin(); !begun) return begun;
   return writer->write(stitcher.stitch(*frames));
 }
 
@@ -164,6 +172,7 @@ Status stitchSequence(const BevArguments& arguments) {
     if (!(*masks)[i].empty()) stitcher.setMask(static_cast<int>(i), (*masks)[i]);
   }
   writer->setViews(stitcher, opened->rig);
+  if (Status begun = writer->begin(); !begun) return begun;
   ProgressPrinter progress("bev");
   int written = 0;
   while (true) {
@@ -187,19 +196,16 @@ Status stitchSequence(const BevArguments& arguments) {
 int run(BevArguments& arguments) {
   for (const std::string& setting : arguments.settings) {
     const Status status = setOption(asOptions(arguments.options), setting);
-    if (!status) return fail(status.error());
+    if (!status) return failUsage(status.error());
   }
   if (arguments.source.empty() == arguments.rig.empty()) {
-    return fail({"give either a sequence, or --rig with one --image per camera"});
+    return failUsage({"give either a sequence, or --rig with one --image per camera"});
   }
   if (arguments.rig.empty() != arguments.images.empty()) {
-    return fail({"--rig and --image go together: --rig RIG.yaml --image cam0=FILE ..."});
+    return failUsage({"--rig and --image go together: --rig RIG.yaml --image cam0=FILE ..."});
   }
-  std::error_code code;
-  std::filesystem::create_directories(arguments.out, code);
-  if (code) {
-    return fail({fmt::format("{}: the folder cannot be made: {}", arguments.out, code.message())});
-  }
+  const Status usable = checkOutputFolder(arguments.out, arguments.force);
+  if (!usable) return fail(usable.error());
   const Status status =
       arguments.source.empty() ? stitchSingle(arguments) : stitchSequence(arguments);
   return status ? 0 : fail(status.error());
@@ -215,20 +221,26 @@ void addBevCommand(CLI::App& app, int& exit_code) {
       ->required();
   command->add_option("--every", arguments->every, "Stitch every N-th frame set only [1]")
       ->check(CLI::Range(1, 1000000));
-  command->add_option("--cameras", arguments->cameras,
-                      "Cameras to use, as cam0,cam1; default: all");
+  command->add_option("--cameras", arguments->cameras, "Cameras to use, as cam0,cam1; default: all")
+      ->check(checkCameraNames);
   command->add_option("--start", arguments->start_s, "Skip this much of the sequence, s")
-      ->check(CLI::NonNegativeNumber);
+      ->check(notNegative());
   command->add_option("--duration", arguments->duration_s, "Stop after this much, s; 0: at the end")
-      ->check(CLI::NonNegativeNumber);
+      ->check(notNegative());
   command->add_option("--rig", arguments->rig, "rig.yaml for single pictures");
   command->add_option("--image", arguments->images, "CAMERA=FILE, once per camera, with --rig")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_flag("--overlay", arguments->overlay,
-                    "Lay the classes and objects that the network sees over the pictures");
-  command->add_option("--network", arguments->network,
-                      "Class map of another network for --overlay (docs/networks.md)");
+  CLI::Option* overlay =
+      command->add_flag("--overlay", arguments->overlay,
+                        "Lay the classes and objects that the network sees over the pictures");
+  command
+      ->add_option("--network", arguments->network,
+                   "Class map of another network for --overlay (docs/networks.md)")
+      ->needs(overlay);
+  command->add_flag(
+      "--force", arguments->force,
+      "Write into a folder that is not empty; pictures of the same names are replaced");
   command->add_option("--set", arguments->settings, "An option below, as metres_per_px=0.02")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

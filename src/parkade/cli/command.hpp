@@ -10,7 +10,8 @@
 namespace parkade::cli {
 
 // One function per subcommand, each in its own source. It adds the subcommand with its options and
-// an example, and a callback that does the work and stores the exit code: 0 done, 1 failed.
+// an example, and a callback that does the work and stores the exit code: 0 done, 1 failed, 2
+// where the command line is wrong.
 
 void addInfoCommand(CLI::App& app, int& exit_code);
 void addEvalCommand(CLI::App& app, int& exit_code);
@@ -23,5 +24,8 @@ void addBenchSemantics(CLI::App& bench, int& exit_code);
 
 /// Prints "parkade: MESSAGE" on stderr; returns the exit code 1.
 int fail(const Error& error);
+
+/// The same where the command line itself is wrong: 2.
+int failUsage(const Error& error);
 
 }  // namespace parkade::cli

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "parkade/cli/command.hpp"
+#include "parkade/cli/number_checks.hpp"
 #ifdef PARKADE_WITH_EVAL_MAP
 #include "parkade/cli/eval_map.hpp"
 #include "parkade/cli/map_truth_file.hpp"
@@ -94,6 +95,9 @@ Result<TrajectoryFile> read(const Result<std::string>& path, const std::string& 
   TrajectoryReadOptions options;
   options.format = trajectoryFormatFromName(format);
   auto file = readReference(*path, options);
+  if (!times.empty() && !fs::exists(times)) {
+    return Error{fmt::format("--times {}: no such file", times)};
+  }
   if (!file || file->has_stamps || times.empty()) return file;
   options.kitti_times_path = times;
   return readReference(*path, options);
@@ -216,7 +220,7 @@ void addEvalCommand(CLI::App& app, int& exit_code) {
   command
       ->add_option("--tolerance", association.tolerance_s,
                    "Largest difference of two stamps that match, s")
-      ->check(CLI::NonNegativeNumber)
+      ->check(notNegative())
       ->capture_default_str()
       ->group("Matching");
   command
@@ -230,7 +234,7 @@ void addEvalCommand(CLI::App& app, int& exit_code) {
       ->add_option("--max-gap", association.max_gap_s,
                    "A longer pause (and than 3 median steps) is a hole: not covered, not "
                    "interpolated across, s")
-      ->check(CLI::NonNegativeNumber)
+      ->check(notNegative())
       ->capture_default_str()
       ->group("Matching");
   command->add_option("--format", a->format, "Format of TRAJECTORY")
@@ -262,7 +266,7 @@ void addEvalCommand(CLI::App& app, int& exit_code) {
       ->group("Measuring");
 #endif
   command->add_option("--rpe-delta", a->options.rpe.delta, "Distance of the RPE's pairs")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str()
       ->group("Measuring");
   command
@@ -278,6 +282,7 @@ void addEvalCommand(CLI::App& app, int& exit_code) {
 
   command->add_option("--json", a->json, "Write the figures to this file")->group("Output");
   command->add_option("--plot", a->plot, "Draw trajectories and errors to this SVG file")
+      ->check(endsWith(".svg"))
       ->group("Output");
 #ifdef PARKADE_WITH_REPORT
   command->add_option("--report", a->report, "Write a run's page with its errors to this HTML file")

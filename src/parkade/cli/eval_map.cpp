@@ -10,6 +10,7 @@
 #include "parkade/cli/command.hpp"
 #include "parkade/cli/map_path.hpp"
 #include "parkade/cli/map_truth_file.hpp"
+#include "parkade/cli/number_checks.hpp"
 #include "parkade/eval/map_picture.hpp"
 #include "parkade/eval/map_report.hpp"
 #include "parkade/io/file.hpp"
@@ -84,13 +85,14 @@ void addEvalMapCommand(CLI::App& eval, int& exit_code) {
   command
       ->add_option("--passed-within", a->options.passed_within_m,
                    "Judge what the car came this near to, m")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command->add_option("--min-iou", a->options.min_iou, "A slot is found from this overlap on")
       ->check(CLI::Range(0.05, 0.99))
       ->capture_default_str();
   command->add_option("--json", a->json, "Write the figures to this file")->group("Output");
   command->add_option("--picture", a->picture, "Draw map and truth to this PNG file")
+      ->check(endsWith(".png"))
       ->group("Output");
   command->footer(
       "The map is laid on the truth by its first pose. Definitions: docs/evaluation.md.\n"

@@ -77,6 +77,13 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    const std::vector<std::string> unknown = app.remaining(true);
+    const bool no_command = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr ||
+                            dynamic_cast<const CLI::CallForHelp*>(&error) != nullptr;
+    if (no_command && !unknown.empty() && unknown.front().rfind('-', 0) != 0) {
+      return failUsage({fmt::format("there is no command '{}'; 'parkade --help' lists all commands",
+                                    unknown.front())});
+    }
     return app.exit(error) == 0 ? 0 : kWrongUsage;
   }
   return exit_code;
@@ -87,6 +94,11 @@ int run(int argc, char** argv) {
 int fail(const Error& error) {
   fmt::print(stderr, "parkade: {}\n", error.message);
   return 1;
+}
+
+int failUsage(const Error& error) {
+  fail(error);
+  return kWrongUsage;
 }
 
 }  // namespace parkade::cli

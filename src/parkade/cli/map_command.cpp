@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Parkade authors
 // SPDX-License-Identifier: Apache-2.0
+#include "parkade/cli/map_command.hpp"
+
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -12,6 +14,7 @@
 #include <vector>
 
 #include "parkade/cli/command.hpp"
+#include "parkade/cli/map_path.hpp"
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
 #include "parkade/mapping/map_check.hpp"
@@ -30,7 +33,13 @@ struct MapArguments {
   std::string out;
   std::vector<std::string> formats;
   double metres_per_px = 0.05;
+
+  [[nodiscard]] bool wants(const char* format) const {
+    return formats.empty() || std::find(formats.begin(), formats.end(), format) != formats.end();
+  }
 };
+
+constexpr double kMostMetresPerPx = 10.0;
 
 nlohmann::json layerJson(const ParkingMap& map, GridLayer layer) {
   std::int64_t known = 0;
@@ -131,14 +140,7 @@ std::string textOf(const std::string& path, const nlohmann::json& d) {
 }
 
 Status showMap(const MapArguments& arguments) {
-  const Result<ParkingMap> map = loadMap(arguments.path);
-  if (!map) return map.error();
-  const nlohmann::json description = describe(arguments.path, *map);
-  fmt::print("{}", textOf(arguments.path, description));
-  if (arguments.json.empty()) return {};
-  return writeFileAtomic(
-      arguments.json,
-      description.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  return describeMap(arguments.path, arguments.json);
 }
 
 Status checkMap(const MapArguments& arguments) {
@@ -170,28 +172,45 @@ Status exportPicture(const MapArguments& arguments, const ParkingMap& map) {
   return writeImage(joinPath(arguments.out, "map.png"), *picture, encoding);
 }
 
+// Finds what would fail before anything is written.
+Status checkExport(const MapArguments& arguments, const ParkingMap& map) {
+  const auto refused = [&](const char* format, const Status& fits, const std::string& remedy) {
+    return Error{fmt::format(
+        "{}: {}: {}; {}choose formats other than {} (--format), or see with 'parkade map check {}' "
+        "what lies too far away; nothing was written",
+        arguments.path, format, fits.error().message, remedy, format, arguments.path)};
+  };
+  if (arguments.wants("nav2")) {
+    const Status fits = checkPictureSize(nav2PictureSize(map));
+    if (!fits) return refused("nav2", fits, "");
+  }
+  if (arguments.wants("png")) {
+    const Status fits = checkPictureSize(mapPictureSize(map, arguments.metres_per_px));
+    const double finest = finestMetresPerPx(map);
+    const std::string coarser = fmt::format("take --metres-per-px {:.2f} or more, ", finest);
+    if (!fits) return refused("png", fits, finest <= kMostMetresPerPx ? coarser : "");
+  }
+  return {};
+}
+
 Status exportMap(const MapArguments& arguments) {
   const Result<ParkingMap> map = loadMap(arguments.path);
   if (!map) return map.error();
+  if (Status fits = checkExport(arguments, *map); !fits) return fits;
   if (Status made = makeFolders(arguments.out); !made) return made;
-  const auto wants = [&](const char* format) {
-    return arguments.formats.empty() ||
-           std::find(arguments.formats.begin(), arguments.formats.end(), format) !=
-               arguments.formats.end();
-  };
-  if (wants("nav2")) {
+  if (arguments.wants("nav2")) {
     for (const GridLayer layer : kGridLayers) {
       if (Status status = exportNav2(*map, layer, arguments.out); !status) return status;
     }
   }
-  if (wants("png")) {
+  if (arguments.wants("png")) {
     if (Status status = exportPicture(arguments, *map); !status) return status;
   }
-  if (wants("geojson")) {
+  if (arguments.wants("geojson")) {
     Status status = exportGeoJson(*map, joinPath(arguments.out, "map.geojson"));
     if (!status) return status;
   }
-  if (wants("lanelet2")) {
+  if (arguments.wants("lanelet2")) {
     Status status = exportLanelet2(*map, joinPath(arguments.out, "map.osm"));
     if (!status) return status;
   }
@@ -209,23 +228,27 @@ Status mergeMaps(const MapArguments& arguments) {
     return Error{
         fmt::format("{} into {}: {}", arguments.later, arguments.path, report.error().message)};
   }
-  Result<MapFile> file = MapFile::open(arguments.out);
+  const std::string out = mapFileOf(arguments.out);
+  Result<MapFile> file = MapFile::open(out);
   if (!file) return file.error();
   if (Status status = file->save(*saved); !status) return status;
   fmt::print(
       "{}: {} slots ({} seen again, {} new, {} refused, for they lie across others), {} objects "
       "({} seen again, {} new)\n",
-      arguments.out, saved->slots.size(), report->slots_again, report->slots_new,
-      report->slots_refused, saved->objects.size(), report->objects_again, report->objects_new);
+      out, saved->slots.size(), report->slots_again, report->slots_new, report->slots_refused,
+      saved->objects.size(), report->objects_again, report->objects_new);
   return {};
 }
 
-CLI::App* addAction(CLI::App* command, const char* name, const char* help,
+CLI::App* addAction(CLI::App* command, const char* name, const char* help, const char* example,
                     const std::shared_ptr<MapArguments>& a, int& exit_code,
                     Status (*action)(const MapArguments&)) {
   auto* sub = command->add_subcommand(name, help);
-  sub->add_option("MAP", a->path, "Map file, such as a run's map.db")->required();
+  sub->add_option("MAP", a->path, "Map file, such as a run's map.db, or the run's folder")
+      ->required();
+  sub->footer(std::string("Example:\n  ") + example);
   sub->callback([a, action, &exit_code] {
+    for (std::string* path : {&a->path, &a->later}) *path = mapFileOf(*path);
     const Status status = action(*a);
     if (!status) exit_code = fail(status.error());
   });
@@ -234,29 +257,43 @@ CLI::App* addAction(CLI::App* command, const char* name, const char* help,
 
 }  // namespace
 
+Status describeMap(const std::string& path, const std::string& json) {
+  const Result<ParkingMap> map = loadMap(path);
+  if (!map) return map.error();
+  const nlohmann::json description = describe(path, *map);
+  fmt::print("{}", textOf(path, description));
+  if (json.empty()) return {};
+  return writeFileAtomic(
+      json, description.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+}
+
 void addMapCommand(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("map", "Describe, check, export or merge maps");
   const auto a = std::make_shared<MapArguments>();
   command->require_subcommand(1);
-  auto* info = addAction(command, "info", "Say what a map holds", a, exit_code, showMap);
+  auto* info = addAction(command, "info", "Say what a map holds",
+                         "parkade map info OUT/map.db --json map.json", a, exit_code, showMap);
   info->add_option("--json", a->json, "Write the same as JSON to this file");
   auto* check = addAction(command, "check",
                           "Look for damage and contradictions; exit code 1 where "
                           "there are any",
-                          a, exit_code, checkMap);
+                          "parkade map check OUT/map.db", a, exit_code, checkMap);
   check->add_option("--json", a->json, "Write the faults as JSON to this file");
-  auto* out = addAction(command, "export", "Write the formats of others", a, exit_code, exportMap);
+  auto* out = addAction(command, "export", "Write the formats of others",
+                        "parkade map export OUT/map.db --out OUT/map --format nav2,geojson", a,
+                        exit_code, exportMap);
   out->add_option("-o,--out", a->out, "Folder to write, made where it is not there")->required();
   out->add_option("--format", a->formats, "nav2, png, geojson, lanelet2; default: all")
       ->delimiter(',')
       ->check(CLI::IsMember({"nav2", "png", "geojson", "lanelet2"}));
   out->add_option("--metres-per-px", a->metres_per_px, "Of the picture")
-      ->check(CLI::Range(0.005, 10.0))
+      ->check(CLI::Range(0.005, kMostMetresPerPx))
       ->capture_default_str();
-  auto* merge =
-      addAction(command, "merge", "Add the map of a later drive (run --map) to a saved one", a,
-                exit_code, mergeMaps);
-  merge->add_option("LATER", a->later, "Map of the drive that was localised in MAP")->required();
+  auto* merge = addAction(
+      command, "merge", "Add the map of a later drive (run --map) to a saved one",
+      "parkade map merge OUT/map.db LATER/map.db --out garage.db", a, exit_code, mergeMaps);
+  merge->add_option("LATER", a->later, "Map (or run folder) of the drive that was localised in MAP")
+      ->required();
   merge->add_option("-o,--out", a->out, "Map file to write; may be MAP itself")->required();
   command->footer(
       "Examples:\n"

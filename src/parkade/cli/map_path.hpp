@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <system_error>
 
 #include "parkade/io/file.hpp"
 
@@ -11,7 +12,8 @@ namespace parkade::cli {
 
 /// A map's file: the path itself, or the one in the folder of the run that made it.
 inline std::string mapFileOf(const std::string& path) {
-  return std::filesystem::is_directory(path) ? joinPath(path, "map.db") : path;
+  std::error_code code;  // a folder that cannot be looked into is told by who opens the path
+  return std::filesystem::is_directory(path, code) ? joinPath(path, "map.db") : path;
 }
 
 }  // namespace parkade::cli

@@ -220,7 +220,7 @@ Status scoreMarkingPoints(const MarkingPointOptions& options) {
       readAnnotations(joinPath(options.folder, "annotations.txt"));
   if (!pictures) return pictures.error();
   Result<SegmentationNetwork> network =
-      SegmentationNetwork::loadOrOwn(options.bev_network, "bev_segmentation");
+      SegmentationNetwork::loadOrOwn(options.bev_network, kBevNetwork);
   if (!network) return network.error();
   const Status made =
       makeFolders(options.pictures ? joinPath(options.out, "pictures") : options.out);

@@ -298,7 +298,7 @@ Result<std::unique_ptr<SampleScore>> makeObjectScore(const ObjectScoreOptions& o
   std::optional<SegmentationNetwork> network;
   if (!options.true_labels) {
     Result<SegmentationNetwork> loaded =
-        SegmentationNetwork::loadOrOwn(options.bev_network, "bev_segmentation");
+        SegmentationNetwork::loadOrOwn(options.bev_network, kBevNetwork);
     if (!loaded) return loaded.error();
     network = std::move(loaded).value();
   }

@@ -6,6 +6,7 @@
 
 #include <utility>
 
+#include "parkade/core/split.hpp"
 #include "parkade/io/sequence_reader.hpp"
 #ifdef PARKADE_WITH_SIM
 #include "parkade/sim/drive/frame_renderer.hpp"
@@ -55,6 +56,12 @@ Result<OpenedSource> openSimulator(const SourceRequest& request) {
 
 Result<OpenedSource> openSource(const SourceRequest& request) {
   return request.spec.starts_with("sim:") ? openSimulator(request) : openFolder(request);
+}
+
+std::string checkCameraNames(const std::string& text) {
+  if (!hasEmptyPart(text, ',')) return "";
+  return fmt::format("'{}' has an empty name; expected names with commas between them: cam0,cam1",
+                     text);
 }
 
 }  // namespace parkade::cli

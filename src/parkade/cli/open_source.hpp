@@ -32,4 +32,7 @@ struct OpenedSource {
 /// Opens a sequence folder or the simulator: from here on nobody can tell which.
 Result<OpenedSource> openSource(const SourceRequest& request);
 
+/// What is wrong with the text of --cameras; empty where nothing is.
+std::string checkCameraNames(const std::string& text);
+
 }  // namespace parkade::cli

@@ -12,7 +12,9 @@
 
 #include "parkade/cli/command.hpp"
 #include "parkade/cli/map_path.hpp"
+#include "parkade/cli/number_checks.hpp"
 #include "parkade/cli/open_source.hpp"
+#include "parkade/cli/output_folder.hpp"
 #include "parkade/cli/run_outputs.hpp"
 #ifdef PARKADE_WITH_REPORT
 #include "parkade/cli/report_pictures.hpp"
@@ -42,31 +44,38 @@ struct RunArguments {
 };
 
 constexpr const char* kRunFooter =
-    "SEQ is a sequence folder (docs/formats.md). OUT then holds trajectory.tum (one pose per "
-    "frame\n"
-    "set from the start on, as known at its instant), trajectory_vio.tum, health.csv, "
-    "timing.json,\n"
-    "metrics.json, config.yaml and report.html; with --final also trajectory_final.tum. With "
-    "--map\n"
-    "all poses are in the map's frame, and trajectory.tum begins where the car is found in it.\n"
+    "SEQ is a sequence folder (docs/formats.md). OUT then holds\n"
+    "  trajectory.tum        one pose per frame set from the start on, as known at its instant\n"
+    "  trajectory_vio.tum    the odometry's poses; with --final also trajectory_final.tum\n"
+    "  covariance.csv        the covariance of every pose\n"
+    "  health.csv            one row per frame set: health and its reason, speed, biases\n"
+    "  map.db, map/          the map and its exports, where the method makes one (not vis)\n"
+    "  report.html           a page about the run; pictures/ holds what it shows\n"
+    "  timing.json, metrics.json, config.yaml\n"
+    "With --map all poses are in the map's frame, and trajectory.tum begins where the car is found "
+    "in\n"
+    "it. The results of an earlier run in OUT are replaced with --force only, once the new ones "
+    "are\n"
+    "there.\n"
     "\n"
     "'parkade run --help-options' lists every option that --set and --config take.\n"
     "\n"
     "Examples:\n"
     "  parkade run SEQ --out OUT\n"
-    "  parkade run SEQ --out OUT --cameras cam0 --set vio.window.keyframes=8 --final\n"
-    "  parkade run SEQ --out OUT --method fused\n"
-    "  parkade run LATER --out OUT2 --method fused --map OUT\n"
-    "  parkade run SEQ --out OUT --duration 5 --debug-images OUT/tracks";
+    "  parkade run SEQ --out FRONT --cameras cam0 --set vio.window.keyframes=8 --final\n"
+    "  parkade run SEQ --out FUSED --method fused\n"
+    "  parkade run LATER --out OUT2 --method fused --map FUSED\n"
+    "  parkade run SEQ --out SHORT --duration 5 --debug-images SHORT/tracks";
 
+// Throws what CLI11 throws where the command line is wrong.
 Status configure(const RunArguments& arguments, PipelineOptions& options) {
   if (!arguments.config.empty()) {
     Status status = loadOptions(asOptions(options), arguments.config);
     if (!status) return status;
   }
   for (const std::string& assignment : arguments.assignments) {
-    Status status = setOption(asOptions(options), assignment);
-    if (!status) return status;
+    const Status status = setOption(asOptions(options), assignment);
+    if (!status) throw CLI::ValidationError("--set", status.error().message);
   }
   return {};
 }
@@ -87,39 +96,112 @@ Status locateInMap(const std::string& map, MappingRun& run) {
   return run.locateIn(*saved);
 }
 
-Status runSequence(const RunArguments& arguments) {
+// What can be refused before anything is read.
+Status checkFolders(const RunArguments& arguments) {
+  if (!arguments.map.empty()) {
+    const Status elsewhere = checkMapIsElsewhere(arguments.out, arguments.map);
+    if (!elsewhere) return elsewhere;
+  }
+  return checkRunFolder(arguments.out, arguments.force);
+}
+
+Result<OpenedSource> openInput(const RunArguments& arguments, RunMethod method) {
+  SourceRequest request = arguments.source;
+  request.decode_threads = arguments.threads > 1 ? 1 : 0;
+  request.gray = method == RunMethod::kVis;  // networks want colour
+  request.gray_beside = method == RunMethod::kFused;
+  Result<OpenedSource> opened = openSource(request);
+  if (!opened) return opened.error();
+  const bool on_wheels = method == RunMethod::kSemantic || method == RunMethod::kAvpSlam;
+  if (on_wheels && !opened->source->info().has_wheel) {
+    return Error{fmt::format(
+        "{}: --method {} needs wheel speeds (mav0/wheel0/data.csv), and there are none; take "
+        "--method vis or fused",
+        request.spec, arguments.method)};
+  }
+  return opened;
+}
+
+Result<std::unique_ptr<MappingRun>> createRun(const RunArguments& arguments, const Rig& rig,
+                                              const PipelineOptions& options, RunMethod method) {
+  auto run = MappingRun::create(rig, options, arguments.threads, method);
+  if (run && !arguments.map.empty()) {
+    if (Status located = locateInMap(arguments.map, **run); !located) return located.error();
+  }
+  return run;
+}
+
+RunDescription describe(const RunArguments& arguments, const Rig& rig, PipelineOptions& options) {
+  RunDescription description;
+  description.source = arguments.source.spec;
+  description.cameras = arguments.source.cameras;
+  for (const RigCamera& camera : rig.cameras) description.camera_names.push_back(camera.name);
+  description.method = arguments.method;
+  description.config = dumpOptions(asOptions(options));
+  description.threads = arguments.threads;
+  return description;
+}
+
+Status writeResults(const RunArguments& arguments, const RunDescription& description,
+                    const MappingRun& run, const HealthLog& health) {
+  const std::string& out = arguments.out;
+  Status status = clearRunFolder(out, configText(description));
+  if (status) status = writeRunFiles(out, description, run, health, arguments.with_final);
+  if (status) status = writeMap(out, description.source, run);
+  return status;
+}
+
+// Why a run that went to its end has failed all the same.
+Status judge(const RunArguments& arguments, const MappingRun& run) {
+  if (run.summary().poses > 0) return {};
+  if (!arguments.map.empty() && !run.odometry().empty()) {
+    return Error{fmt::format(
+        "{}: the car was not found in {}; is it a map of this garage, and of a place that the "
+        "drive came by? The odometry's poses are in {}",
+        arguments.source.spec, arguments.map, joinPath(arguments.out, "trajectory_vio.tum"))};
+  }
+  return Error{fmt::format("{}: no pose: the estimator did not start; see the reasons in {}",
+                           arguments.source.spec, joinPath(arguments.out, "health.csv"))};
+}
+
+Error nothingSeen(const SensorSourceInfo& info) {
+  return {fmt::format(
+      "{}: no pose: none of {} frame sets could be used: their pictures are missing or cannot be "
+      "read, or no reading of the inertial unit follows them; 'parkade info' tells more",
+      info.name, info.num_frame_sets)};
+}
+
+Status runSequence(RunArguments arguments) {
   PipelineOptions options;
   if (Status status = configure(arguments, options); !status) return status;
   if (arguments.real_time) {
     options.pace = 1.0;
     options.live = true;
   }
+  if (Status status = checkFolders(arguments); !status) return status;
   const RunMethod method = methodOf(arguments.method);
-  SourceRequest request = arguments.source;
   // The paper's semantic method has one camera: the front one, where the user names no other.
-  if (method == RunMethod::kSemantic && request.cameras.empty()) request.cameras = "cam0";
-  request.decode_threads = arguments.threads > 1 ? 1 : 0;
-  request.gray = method == RunMethod::kVis;  // networks want colour
-  request.gray_beside = method == RunMethod::kFused;
-  Result<OpenedSource> opened = openSource(request);
+  std::string& cameras = arguments.source.cameras;
+  if (method == RunMethod::kSemantic && cameras.empty()) cameras = "cam0";
+  Result<OpenedSource> opened = openInput(arguments, method);
   if (!opened) return opened.error();
-  auto run = MappingRun::create(opened->rig, options, arguments.threads, method);
+  auto run = createRun(arguments, opened->rig, options, method);
   if (!run) return run.error();
-  if (!arguments.map.empty()) {
-    if (Status located = locateInMap(arguments.map, **run); !located) return located;
-  }
-  // Last, for it removes what an earlier run left there.
-  if (Status status = prepareRunFolder(arguments.out, arguments.force); !status) return status;
 
   HealthLog health;
   (*run)->addObserver(&health);
   std::optional<DebugImages> images;
   if (!arguments.debug_images.empty()) {
     images.emplace(arguments.debug_images, opened->rig);
+    if (!images->status()) return images->status();
     (*run)->addObserver(&*images);
   }
-#ifdef PARKADE_WITH_REPORT
+  const RunDescription description = describe(arguments, opened->rig, options);
+  // After all that can go wrong before the run.
+  Status begun = beginRunFolder(arguments.out, configText(description));
+  if (!begun) return begun;
   const SensorSourceInfo& info = opened->source->info();
+#ifdef PARKADE_WITH_REPORT
   ReportPictures pictures(arguments.out, opened->rig, info.start_ns, info.end_ns,
                           method != RunMethod::kVis);
   (*run)->addObserver(&pictures);
@@ -127,20 +209,12 @@ Status runSequence(const RunArguments& arguments) {
   ProgressPrinter progress("run");
   const Status outcome = (*run)->run(*opened->source, progress.callback());
   progress.finish();
-
-  RunDescription description;
-  description.source = arguments.source.spec;
-  description.cameras = request.cameras;
-  for (const RigCamera& camera : opened->rig.cameras) {
-    description.camera_names.push_back(camera.name);
-  }
-  description.method = arguments.method;
-  description.config = dumpOptions(asOptions(options));
-  description.threads = arguments.threads;
-  Status written = writeRunFiles(arguments.out, description, **run, health, arguments.with_final);
-  if (!written) return written;
-  if (Status saved = writeMap(arguments.out, arguments.source.spec, **run); !saved) return saved;
   const RunSummary& summary = (*run)->summary();
+  // With nothing to write, an earlier run's results stay.
+  if (summary.frame_sets == 0) return outcome ? Status(nothingSeen(info)) : outcome;
+
+  const Status written = writeResults(arguments, description, **run, health);
+  if (!written) return written;
 #ifdef PARKADE_WITH_REPORT
   if (Status drawn = pictures.finish(); !drawn) return drawn;
   if (summary.poses > 0) {
@@ -156,17 +230,7 @@ Status runSequence(const RunArguments& arguments) {
                              arguments.out)};
   }
   if (images && !images->status()) return images->status();
-  if (summary.poses == 0 && !arguments.map.empty() && !(*run)->odometry().empty()) {
-    return Error{fmt::format(
-        "{}: the car was not found in {}; is it a map of this garage, and of a place that the "
-        "drive came by? The odometry's poses are in {}",
-        arguments.source.spec, arguments.map, joinPath(arguments.out, "trajectory_vio.tum"))};
-  }
-  if (summary.poses == 0) {
-    return Error{fmt::format("{}: no pose: the estimator did not start; see the reasons in {}",
-                             arguments.source.spec, joinPath(arguments.out, "health.csv"))};
-  }
-  return {};
+  return judge(arguments, **run);
 }
 
 }  // namespace
@@ -191,16 +255,20 @@ void addRunCommand(CLI::App& app, int& exit_code) {
       "it: all poses are the map's");
   command->add_flag("--final", a->with_final,
                     "Also write trajectory_final.tum: every pose with all that came after it");
-  command->add_flag("--force", a->force, "Write into a folder that holds something else");
+  command->add_flag(
+      "--force", a->force,
+      "Replace the results of an earlier run in OUT, or write into a folder that holds "
+      "something else");
 
   command->add_option("--cameras", a->source.cameras, "Cameras to use, as cam0,cam1; default: all")
+      ->check(checkCameraNames)
       ->group("Input");
   command->add_option("--start", a->source.start_s, "Skip this much of the sequence, s")
-      ->check(CLI::NonNegativeNumber)
+      ->check(notNegative())
       ->capture_default_str()
       ->group("Input");
   command->add_option("--duration", a->source.duration_s, "Stop after this much, s; 0: at the end")
-      ->check(CLI::NonNegativeNumber)
+      ->check(notNegative())
       ->capture_default_str()
       ->group("Input");
   command

@@ -8,12 +8,10 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "parkade/cli/report_pictures.hpp"
-#include "parkade/core/log.hpp"
+#include "parkade/cli/output_folder.hpp"
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
 #include "parkade/io/pose_covariance_io.hpp"
@@ -25,19 +23,6 @@
 
 namespace parkade::cli {
 namespace {
-
-namespace fs = std::filesystem;
-
-constexpr std::array<const char*, 10> kRunFiles = {
-    "map.db",     "trajectory.tum", "trajectory_vio.tum", "trajectory_final.tum", "covariance.csv",
-    "health.csv", "timing.json",    "metrics.json",       "config.yaml",          "report.html"};
-constexpr std::array<const char*, 3> kMapFiles = {"map.geojson", "map.osm", "map.png"};
-constexpr const char* kConfigHeading = "# Effective configuration of 'parkade run'";
-
-bool isRunFolder(const fs::path& folder) {
-  const Result<std::string> config = readFile((folder / "config.yaml").string());
-  return config.ok() && config->starts_with(kConfigHeading);
-}
 
 nlohmann::json timingJson(const RunSummary& summary) {
   nlohmann::json json;
@@ -101,29 +86,10 @@ nlohmann::json metricsJson(const RunDescription& description, const MappingRun& 
 
 }  // namespace
 
-Status prepareRunFolder(const std::string& folder, bool force) {
-  std::error_code code;
-  if (fs::exists(folder, code) && !fs::is_directory(folder, code)) {
-    return Error{fmt::format("{}: is a file; --out takes a folder", folder)};
-  }
-  if (fs::is_directory(folder, code) && !fs::is_empty(folder, code) && !isRunFolder(folder) &&
-      !force) {
-    return Error{fmt::format(
-        "{}: the folder is not empty and not that of a run; take another one, or --force to write "
-        "into it all the same",
-        folder)};
-  }
-  if (Status made = makeFolders(folder); !made) return made;
-  for (const char* name : kRunFiles) fs::remove(fs::path(folder) / name, code);
-  for (const char* name : kReportPictures) fs::remove(fs::path(folder) / name, code);
-  const fs::path exports = fs::path(folder) / "map";
-  for (const char* name : kMapFiles) fs::remove(exports / name, code);
-  for (const std::string_view layer : kGridLayerNames) {
-    for (const char* ending : {".pgm", ".yaml"}) {
-      fs::remove(exports / (std::string(layer) + ending), code);
-    }
-  }
-  return {};
+std::string configText(const RunDescription& description) {
+  return fmt::format("{}; --config reads it.\n# source: {}\n# method: {}, cameras: {}\n{}",
+                     kRunConfigHeading, description.source, description.method,
+                     description.cameras.empty() ? "all" : description.cameras, description.config);
 }
 
 HealthLog::HealthLog()
@@ -162,7 +128,7 @@ std::optional<double> HealthLog::startUpSeconds() const {
 }
 
 DebugImages::DebugImages(std::string folder, Rig rig)
-    : folder_(std::move(folder)), rig_(std::move(rig)), status_(makeFolders(folder_)) {}
+    : folder_(std::move(folder)), rig_(std::move(rig)), status_(makeWritable(folder_)) {}
 
 void DebugImages::onTracks(const TracksEvent& event) {
   if (!status_) return;
@@ -198,15 +164,10 @@ Status writeRunFiles(const std::string& folder, const RunDescription& descriptio
                                     TrajectoryFormat::kTum);
     if (!status) return status;
   }
-  const std::string config =
-      fmt::format("{}; --config reads it.\n# source: {}\n# method: {}, cameras: {}\n{}",
-                  kConfigHeading, description.source, description.method,
-                  description.cameras.empty() ? "all" : description.cameras, description.config);
-  const std::array<std::pair<const char*, std::string>, 4> files = {{
+  const std::array<std::pair<const char*, std::string>, 3> files = {{
       {"health.csv", health.text()},
       {"timing.json", timingJson(run.summary()).dump(2) + "\n"},
       {"metrics.json", metricsJson(description, run, health).dump(2) + "\n"},
-      {"config.yaml", config},
   }};
   for (const auto& [name, text] : files) {
     Status status = writeFileAtomic(path(name), text);

@@ -11,10 +11,6 @@
 
 namespace parkade::cli {
 
-/// The folder that a run writes. A folder with something else in it is refused, unless forced; the
-/// files of an earlier run are removed first, so that none is taken for this one's.
-Status prepareRunFolder(const std::string& folder, bool force);
-
 /// Gathers one row of health.csv per frame set, and the covariances of the poses.
 class HealthLog : public PipelineObserver {
  public:
@@ -34,7 +30,8 @@ class HealthLog : public PipelineObserver {
   std::optional<TimeNs> first_pose_t_ns_;
 };
 
-/// Draws every frame set's tracks into a folder, as NNNNNN.jpg.
+/// Draws every frame set's tracks into a folder, as NNNNNN.jpg. status() says from the start on
+/// whether that works.
 class DebugImages : public PipelineObserver {
  public:
   DebugImages(std::string folder, Rig rig);
@@ -58,8 +55,11 @@ struct RunDescription {
   int threads = 1;
 };
 
-/// Writes trajectory*.tum, covariance.csv, health.csv, timing.json, metrics.json and config.yaml,
-/// each whole or not at all.
+/// The text of config.yaml.
+std::string configText(const RunDescription& description);
+
+/// Writes trajectory*.tum, covariance.csv, health.csv, timing.json and metrics.json, each whole or
+/// not at all.
 Status writeRunFiles(const std::string& folder, const RunDescription& description,
                      const MappingRun& run, const HealthLog& health, bool with_final);
 

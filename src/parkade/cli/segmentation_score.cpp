@@ -217,12 +217,12 @@ void SegmentationScore::writeTo(nlohmann::json& metrics) const {
 Result<std::unique_ptr<SampleScore>> makeSegmentationScore(
     const SegmentationScoreOptions& options) {
   Result<SegmentationNetwork> bev =
-      SegmentationNetwork::loadOrOwn(options.bev_network, "bev_segmentation");
+      SegmentationNetwork::loadOrOwn(options.bev_network, kBevNetwork);
   if (!bev) return bev.error();
   std::optional<SegmentationNetwork> raw;
-  if (!options.raw_network.empty() || findModel("view_segmentation")) {
+  if (!options.raw_network.empty() || findModel(kViewNetwork)) {
     Result<SegmentationNetwork> loaded =
-        SegmentationNetwork::loadOrOwn(options.raw_network, "view_segmentation");
+        SegmentationNetwork::loadOrOwn(options.raw_network, kViewNetwork);
     if (!loaded) return loaded.error();
     raw = std::move(loaded).value();
   }

@@ -167,13 +167,13 @@ int run(Arguments& arguments) {
   // The user's own number of threads comes later in the list, and wins.
   arguments.values.insert(arguments.values.begin(), {"threads", std::to_string(defaultThreads())});
   const Result<sim::SimSpec> spec = sim::makeSpec(arguments.garage, route, arguments.values, "sim");
-  if (!spec) return fail(spec.error());
+  if (!spec) return failUsage(spec.error());
   const bool draws = !arguments.preview.empty() || !arguments.pictures.empty();
   if (arguments.record.out.empty() && !draws) {
-    return fail({"sim: --out SEQ is missing: where shall the recording go?"});
+    return failUsage({"sim: --out SEQ is missing: where shall the recording go?"});
   }
   const auto simulation = sim::Simulation::make(*spec);
-  if (!simulation) return fail(simulation.error());
+  if (!simulation) return failUsage(simulation.error());
   Status status;
   if (!arguments.preview.empty()) status = writePlan(**simulation, arguments.preview);
   if (status && !arguments.pictures.empty()) {

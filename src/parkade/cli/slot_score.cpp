@@ -358,7 +358,7 @@ Result<std::unique_ptr<SampleScore>> makeSlotScore(const SlotScoreOptions& optio
   std::optional<SegmentationNetwork> network;
   if (!options.true_labels) {
     Result<SegmentationNetwork> loaded =
-        SegmentationNetwork::loadOrOwn(options.bev_network, "bev_segmentation");
+        SegmentationNetwork::loadOrOwn(options.bev_network, kBevNetwork);
     if (!loaded) return loaded.error();
     network = std::move(loaded).value();
   }

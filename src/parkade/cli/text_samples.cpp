@@ -246,9 +246,8 @@ void addNumbers(const SemanticSampler& sampler, const SemanticSample& sample, in
 }  // namespace
 
 Result<TextSampler> TextSampler::make(const std::string& view_network) {
-  if (view_network.empty() && !findModel("view_segmentation")) return TextSampler(std::nullopt);
-  Result<SegmentationNetwork> network =
-      SegmentationNetwork::loadOrOwn(view_network, "view_segmentation");
+  if (view_network.empty() && !findModel(kViewNetwork)) return TextSampler(std::nullopt);
+  Result<SegmentationNetwork> network = SegmentationNetwork::loadOrOwn(view_network, kViewNetwork);
   if (!network) return network.error();
   return TextSampler(std::move(network).value());
 }

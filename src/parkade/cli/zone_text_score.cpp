@@ -186,7 +186,7 @@ Result<std::unique_ptr<SampleScore>> makeZoneTextScore(const ZoneTextScoreOption
   std::optional<SegmentationNetwork> network;
   if (!options.true_labels) {
     Result<SegmentationNetwork> loaded =
-        SegmentationNetwork::loadOrOwn(options.view_network, "view_segmentation");
+        SegmentationNetwork::loadOrOwn(options.view_network, kViewNetwork);
     if (!loaded) return loaded.error();
     network = std::move(loaded).value();
   }

@@ -11,6 +11,7 @@
 #include "parkade/core/markup.hpp"
 #include "parkade/core/random.hpp"
 #include "parkade/core/result.hpp"
+#include "parkade/core/split.hpp"
 #include "parkade/core/time.hpp"
 
 namespace parkade {
@@ -51,6 +52,15 @@ TEST(Time, ConvertsBothWays) {
   EXPECT_GT(fromSeconds(1e300), 0);
   EXPECT_LT(fromSeconds(-1e300), 0);
   EXPECT_EQ(fromSeconds(std::nan("")), 0);
+}
+
+TEST(Split, LeavesEmptyPartsOutAndTellsThem) {
+  EXPECT_THAT(split("front,rear", ','), ::testing::ElementsAre("front", "rear"));
+  EXPECT_THAT(split(",front,,rear,", ','), ::testing::ElementsAre("front", "rear"));
+  for (const char* whole : {"front", "front,rear"}) EXPECT_FALSE(hasEmptyPart(whole, ',')) << whole;
+  for (const char* holed : {"", ",", "front,", ",front", "front,,rear"}) {
+    EXPECT_TRUE(hasEmptyPart(holed, ',')) << holed;
+  }
 }
 
 TEST(Log, GoesThroughTheOneSink) {

@@ -72,7 +72,7 @@ class SettingVisitor : public PathVisitor {
     const bool is_true = entry->text == "true" || entry->text == "1" || entry->text == "on";
     const bool is_false = entry->text == "false" || entry->text == "0" || entry->text == "off";
     if (!is_true && !is_false) {
-      problem(*entry, name, "expected true or false");
+      problem(*entry, name, "expected true or false, or on or off");
     } else if (apply_) {
       value = is_true;
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,12 @@ inline std::vector<std::string> split(std::string_view text, char separator) {
     begin = end + 1;
   }
   return parts;
+}
+
+/// Whether a part of such a list is empty, or all of it: "", ",", "front,,rear", "front,".
+inline bool hasEmptyPart(std::string_view text, char separator) {
+  const auto parts = std::count(text.begin(), text.end(), separator) + 1;
+  return static_cast<std::ptrdiff_t>(split(text, separator).size()) != parts;
 }
 
 }  // namespace parkade

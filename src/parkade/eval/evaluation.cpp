@@ -41,8 +41,8 @@ std::string unitName(const std::string& unit) {
 void addNotes(Evaluation& result) {
   if (result.alignment.degenerate()) {
     result.notes.push_back(fmt::format(
-        "the {} alignment is not fully determined ({}, {} pairs): the smallest rotation was taken; "
-        "do not trust rotation errors about the open direction",
+        "the {} alignment is not fully determined ({}, {} pairs): do not trust rotation errors "
+        "about the open direction",
         result.options.align, toString(result.alignment.degeneracy), result.pairs.size()));
   }
   if (result.relative.pairs.empty()) {

@@ -3,6 +3,7 @@
 #include "parkade/geometry/alignment.hpp"
 
 #include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 
 #include "parkade/core/check.hpp"
@@ -10,9 +11,13 @@
 namespace parkade {
 namespace {
 
-// Below this ratio of width to length a point set counts as a line (1 cm in 100 m): its roll is a
-// matter of noise. Reported, but the rotation is still the least-squares one.
+// Below this ratio of width to length a point set counts as a line (1 cm in 100 m), however well
+// both sets agree. The rotation is still the least-squares one.
 constexpr double kLineWidthRatio = 1e-4;
+// A wider set, up to this ratio, is a line where its deviations leave its roll so uncertain (1
+// degree): as much as the rotation errors that one wants to see.
+constexpr double kNarrow = 0.1;
+constexpr double kOpenRoll = 0.02;  // rad
 // Below this ratio of singular values the least-squares rotation is not unique in double precision.
 constexpr double kRankRatio = 1e-12;
 
@@ -56,6 +61,30 @@ void setResidual(const Points3d& source, const Points3d& target, Alignment& alig
   if (!source.empty()) alignment.rmse = std::sqrt(sum / static_cast<double>(source.size()));
 }
 
+// Whether deviations leave the rotation about a narrow set's long axis (a unit vector in the
+// target) open: docs/math/alignment.md, "What the points leave open".
+bool isRollOpen(const Points3d& source, const Points3d& target, const Moments& m,
+                const Alignment& alignment, const Eigen::Vector3d& axis) {
+  const auto across = [&axis](const Eigen::Vector3d& p) -> Eigen::Vector3d {
+    return p - axis * axis.dot(p);
+  };
+  const double n = static_cast<double>(source.size());
+  const Eigen::Vector3d mean = alignment * m.mean_source;
+  double length2 = 0.0;
+  double width2 = 0.0;
+  double deviation2 = 0.0;
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    const Eigen::Vector3d fitted = alignment * source[i];
+    const double along = axis.dot(fitted - mean);
+    length2 += along * along / n;
+    width2 += across(fitted - mean).squaredNorm() / n;
+    deviation2 += across(target[i] - fitted).squaredNorm();
+  }
+  if (width2 > kNarrow * kNarrow * length2) return false;
+  deviation2 /= std::max(1.0, 2.0 * n - 5.0);  // two coordinates a point; the fit used up five
+  return deviation2 > kOpenRoll * kOpenRoll * width2;
+}
+
 Alignment alignPoints(const Points3d& source, const Points3d& target, bool with_scale) {
   const Moments m = momentsOf(source, target);
   Alignment result;
@@ -84,9 +113,14 @@ Alignment alignPoints(const Points3d& source, const Points3d& target, bool with_
       result.degeneracy = Degeneracy::kCollinear;
     }
   }
-  if (source.size() < 3) result.degeneracy = Degeneracy::kTooFewPoints;
   // Equation (41)
   result.T_target_source = SE3(rotation, m.mean_target - result.scale * (rotation * m.mean_source));
+  if (source.size() < 3) {
+    result.degeneracy = Degeneracy::kTooFewPoints;
+  } else if (result.degeneracy == Degeneracy::kNone &&
+             isRollOpen(source, target, m, result, svd.matrixU().col(0))) {
+    result.degeneracy = Degeneracy::kCollinear;
+  }
   setResidual(source, target, result);
   return result;
 }

@@ -14,7 +14,7 @@ enum class Degeneracy {
   kNone,
   kTooFewPoints,  ///< fewer points than the method needs (3; yaw and origin: 1)
   kCoincident,    ///< all points at one place (yaw: above one another): no rotation, no scale
-  kCollinear,     ///< all points on one line: the rotation about the line is open
+  kCollinear,     ///< all points on one line, as far as they agree: the rotation about it is open
 };
 
 /// "none", "too few points", "all points at one place", "all points on one line".

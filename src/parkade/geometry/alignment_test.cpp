@@ -203,6 +203,52 @@ TEST(Alignment, StraightLineTakesTheSmallestRotation) {
   EXPECT_EQ(alignSE3(source, target).degeneracy, Degeneracy::kCollinear);
 }
 
+// A straight drive of a metre that wobbles by a millimetre, told to a fraction of one: what it says
+// about the roll is those deviations.
+TEST(Alignment, ALineIsALineAsFarAsThePointsAgree) {
+  struct Case {
+    double width;  // of the route across its 1 m
+    double noise;
+    Degeneracy expected;
+  };
+  for (const Case& c :
+       {Case{1e-3, 2e-4, Degeneracy::kCollinear},
+        Case{1e-3, 1e-6, Degeneracy::kNone},  // rolls by 0.1 degrees at most
+        Case{3e-2, 2e-4, Degeneracy::kNone}, Case{3e-2, 6e-3, Degeneracy::kCollinear},
+        // A route with corners and a bad estimate is no line.
+        Case{0.5, 0.1, Degeneracy::kNone}}) {
+    Random random(7);
+    const SE3 T = randomPose(random);
+    Points3d source;
+    for (int i = 0; i < 40; ++i) {
+      source.emplace_back(0.025 * i, c.width * std::sin(0.2 * i),
+                          0.3 * c.width * std::cos(0.5 * i));
+    }
+    Points3d target = mapped(source, T, 1.0);
+    for (auto& p : target) p += randomVector(random, c.noise);
+    const Alignment rigid = alignSE3(source, target);
+    EXPECT_EQ(rigid.degeneracy, c.expected) << c.width << " m wide, noise " << c.noise;
+    EXPECT_EQ(alignSim3(source, target).degeneracy, c.expected);
+    const SO3 roll = T.rotation().inverse() * rigid.T_target_source.rotation();
+    if (c.expected == Degeneracy::kNone && c.width < 0.1) {
+      EXPECT_LT(roll.log().norm(), 0.02);
+    }
+  }
+}
+
+// Errors along the line (a wrong scale, late stamps) say nothing about the roll.
+TEST(Alignment, ErrorsAlongALineLeaveItsRollKnown) {
+  Points3d source;
+  Points3d target;
+  for (int i = 0; i < 100; ++i) {
+    source.emplace_back(1.0 * i, std::sin(0.1 * i), 0.0);
+    target.emplace_back(1.01 * i, std::sin(0.1 * i), 0.0);
+  }
+  const Alignment a = alignSE3(source, target);
+  EXPECT_GT(a.rmse, 0.2);
+  EXPECT_EQ(a.degeneracy, Degeneracy::kNone);
+}
+
 TEST(Alignment, RefusesListsThatDoNotMatch) {
   const Points3d two = {{0, 0, 0}, {1, 0, 0}};
   const Points3d three = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <utility>
@@ -36,15 +37,26 @@ void keepBetween(std::vector<Row>& rows, TimeNs begin, TimeNs end) {
 }
 
 Status checkRanges(const SequenceReaderOptions& options) {
-  const bool good = options.join_tolerance_ms >= -1.0 && options.start_s >= 0.0 &&
-                    options.duration_s >= 0.0 && options.decode_threads >= 0 &&
-                    options.decode_ahead >= 1;
-  if (good) return {};
-  return Error{
-      fmt::format("reader options out of range: join_tolerance_ms {}, start_s {}, duration_s {}, "
-                  "decode_threads {} (>= 0), decode_ahead {} (>= 1)",
-                  options.join_tolerance_ms, options.start_s, options.duration_s,
-                  options.decode_threads, options.decode_ahead)};
+  struct Range {
+    const char* name;
+    double value;
+    double least;
+  };
+  const Range ranges[] = {{"join_tolerance_ms", options.join_tolerance_ms, -1.0},
+                          {"start_s", options.start_s, 0.0},
+                          {"duration_s", options.duration_s, 0.0},
+                          {"decode_threads", static_cast<double>(options.decode_threads), 0.0},
+                          {"decode_ahead", static_cast<double>(options.decode_ahead), 1.0}};
+  for (const Range& range : ranges) {
+    if (std::isfinite(range.value) && range.value >= range.least) continue;
+    return Error{fmt::format("{} {:g} is out of its range; expected a number from {:g} on",
+                             range.name, range.value, range.least)};
+  }
+  if (!options.cameras.empty() && hasEmptyPart(options.cameras, ',')) {
+    return Error{
+        fmt::format("cameras '{}': a name is empty; expected names as cam0,cam1", options.cameras)};
+  }
+  return {};
 }
 
 }  // namespace
@@ -146,12 +158,17 @@ Status SequenceReader::cut(const SequenceReaderOptions& options) {
   span_of_all(begin, end);
   const TimeNs from = begin + fromSeconds(options.start_s);
   const TimeNs to = options.duration_s > 0.0 ? from + fromSeconds(options.duration_s) : end;
-  if (!frames_.empty() && (from > frames_.back().t_ns || to < frames_.front().t_ns)) {
-    return Error{
-        fmt::format("{}: no pictures from {:g} s after its start{}; the recording lasts {:.1f} s",
-                    info_.name, options.start_s,
-                    options.duration_s > 0.0 ? fmt::format(", for {:g} s", options.duration_s) : "",
-                    toSeconds(end - begin))};
+  const auto is_in = [=](const JoinedFrame& frame) {
+    return frame.t_ns >= from && frame.t_ns <= to;
+  };
+  if (!frames_.empty() && std::none_of(frames_.begin(), frames_.end(), is_in)) {
+    return Error{fmt::format(
+        "{}: no pictures from {:g} s after its start{}; the recording lasts {:.1f} s and has "
+        "pictures from {:.2f} s to {:.2f} s (see --start and --duration)",
+        info_.name, options.start_s,
+        options.duration_s > 0.0 ? fmt::format(", for {:g} s", options.duration_s) : "",
+        toSeconds(end - begin), toSeconds(frames_.front().t_ns - begin),
+        toSeconds(frames_.back().t_ns - begin))};
   }
   keepBetween(imu_, from, to);
   keepBetween(wheel_, from, to);

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "parkade/io/image_file.hpp"
 #include "parkade/io/sequence_test_support.hpp"
@@ -15,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 // A whole small sequence to damage.
 class SequenceReaderTest : public testing::Test {
@@ -107,7 +109,12 @@ TEST_F(SequenceReaderTest, ACutThatLeavesNothingIsAnError) {
     const auto reader = SequenceReader::open(seq(), options);
     ASSERT_FALSE(reader.ok());
     EXPECT_THAT(reader.error().message, ::testing::HasSubstr("no pictures from"));
+    EXPECT_THAT(reader.error().message, ::testing::HasSubstr("pictures from 0.00 s to 0.90 s"));
   }
+  // Between two pictures.
+  options.start_s = 0.71;
+  options.duration_s = 0.05;
+  EXPECT_THAT(openError(options), HasSubstr("no pictures from 0.71 s after its start, for 0.05 s"));
 }
 
 TEST_F(SequenceReaderTest, SubsetOfCamerasAndCut) {
@@ -266,6 +273,17 @@ TEST_F(SequenceReaderTest, BadOptionsAreRefused) {
   options = {};
   options.decode_ahead = 0;
   EXPECT_THAT(openError(options), HasSubstr("decode_ahead 0"));
+  options = {};
+  options.duration_s = std::nan("");
+  EXPECT_THAT(openError(options), AllOf(HasSubstr("duration_s nan"), Not(HasSubstr("decode"))));
+  options = {};
+  options.start_s = -1.0;
+  EXPECT_THAT(openError(options), HasSubstr("start_s -1"));
+  for (const char* holed : {",", "cam0,", "cam0,,cam1"}) {
+    options = {};
+    options.cameras = holed;
+    EXPECT_THAT(openError(options), HasSubstr(holed));
+  }
 }
 
 TEST_F(SequenceReaderTest, BadCalibrationsAreRefused) {

@@ -58,5 +58,52 @@ TEST(MapCheck, FaultsAreNamed) {
   EXPECT_THAT(findFaults(map), ElementsAre(HasSubstr("node 2: is older")));
 }
 
+TEST(MapCheck, WhatLiesTooFarAwayIsNamed) {
+  ParkingMap map = testing::sampleMap();
+  map.nodes[3].T_world_vehicle.translation().x() = 1e30;
+  map.nodes[1].T_world_vehicle.translation().z() = -1e4;
+  map.edges[1].T_from_to.translation() = {0.0, 1e30, 0.0};
+  map.objects[0].outline[1] = {0.0, 2e4};
+  EXPECT_THAT(findFaults(map),
+              ElementsAre("object 3: outline: lies at (0, 20000) m, farther than 10000 m from the "
+                          "origin",
+                          HasSubstr("node 1: lies at (1, 0, -10000)"),
+                          HasSubstr("node 3: lies at (1e+30, 0, 0)"),
+                          HasSubstr("edge 1 to 2: is 1e+30 m long, more than 10000")));
+}
+
+TEST(MapCheck, TilesTooFarAwayAreOneFaultOfTheirLayer) {
+  ParkingMap map = testing::sampleMap();
+  map.grid.touchTile(GridLayer::kRoadMarkers, {100000, 2});
+  EXPECT_THAT(findFaults(map),
+              ElementsAre(HasSubstr("tile (100000, 2) of layer road_markers: lies at (320000, ")));
+  map.grid.touchTile(GridLayer::kRoadMarkers, {100000, 3});
+  map.grid.touchTile(GridLayer::kRoadMarkers, {100000, 4});
+  EXPECT_THAT(findFaults(map), ElementsAre(HasSubstr("and so do 2 others")));
+  // The tile that reaches beyond 10 km, and the last one that does not.
+  map = testing::sampleMap();
+  map.grid.touchTile(GridLayer::kDynamic, {-3125, 0});
+  map.grid.touchTile(GridLayer::kDynamic, {3123, 0});
+  EXPECT_THAT(findFaults(map), ElementsAre(HasSubstr("tile (-3125, 0) of layer dynamic")));
+}
+
+TEST(MapCheck, SigmasAndCountsBelowZeroAreNamed) {
+  ParkingMap map = testing::sampleMap();
+  map.objects[1].position_sigma = -5.0;
+  map.objects[1].observations = -2;
+  map.slots[0].corner_sigma = -0.1;
+  map.slots[5].observations = -1;
+  EXPECT_THAT(findFaults(map), ElementsAre(HasSubstr("slot 10: corner_sigma of -0.1 m"),
+                                           HasSubstr("slot 15: observations of -1"),
+                                           HasSubstr("object 4: position_sigma of -5 m"),
+                                           HasSubstr("object 4: observations of -2")));
+}
+
+TEST(MapCheck, AnEdgeFromANodeToItselfIsNamed) {
+  ParkingMap map = testing::sampleMap();
+  map.edges[2].to = map.edges[2].from;
+  EXPECT_THAT(findFaults(map), ElementsAre("edge 2 to 2: joins a node to itself"));
+}
+
 }  // namespace
 }  // namespace parkade

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/pipeline/painted_number_front_end.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
@@ -70,16 +72,26 @@ struct PaintedNumberFrontEnd::Impl {
                             rig.cameras[seen.camera].camera, seen.T_floor_cam);
   }
 
-  // What a patch may say, of those texts whose figures fill the number's width.
+  // What a patch may say: of those texts whose figures fill the number's width, for they alone can
+  // be right.
   Result<std::vector<TextReading>> readFilling(const PaintedNumber& number, const cv::Mat& patch,
                                                const std::string& only) {
     constexpr double kWidest = 1.2;  // of a figure's height
     Result<std::vector<TextReading>> readings = reader.read(patch, only);
     if (!readings) return readings;
-    std::erase_if(*readings, [&](const TextReading& reading) {
-      return !reading.text.empty() &&
-             number.width > kWidest * number.height * static_cast<double>(reading.text.size());
-    });
+    const auto fills = [&](const TextReading& reading) {
+      return reading.text.empty() ||
+             number.width <= kWidest * number.height * static_cast<double>(reading.text.size());
+    };
+    double possible = 1.0;
+    for (const TextReading& reading : *readings) {
+      if (!fills(reading)) possible -= reading.probability;
+    }
+    std::erase_if(*readings, [&](const TextReading& reading) { return !fills(reading); });
+    constexpr double kLeastPossible = 0.1;
+    for (TextReading& reading : *readings) {
+      reading.probability /= std::max(kLeastPossible, possible);
+    }
     return readings;
   }
 
@@ -122,7 +134,7 @@ struct PaintedNumberFrontEnd::Impl {
     Eigen::Vector3d p_odom;
     std::optional<Eigen::Vector3d> read_from = std::nullopt;  ///< the car's place
     int readings = 0;
-    TextEvidence text{false};
+    TextEvidence text = {};
   };
   std::vector<Limit> limits = {};
   std::vector<std::string> limit_values = {};
@@ -152,10 +164,20 @@ Result<std::unique_ptr<PaintedNumberFrontEnd>> PaintedNumberFrontEnd::create(
   }
   Result<ZoneTextReader> reader = ZoneTextReader::load(*path);
   if (!reader) return reader.error();
+  const Status known = reader->knows(options.letters, "semantics.painted_numbers.letters");
+  if (!known) return known.error();
+  std::vector<std::string> limits = split(options.limits, ' ');
+  for (const std::string& limit : limits) {
+    if (limit.find_first_not_of("0123456789") == std::string::npos) continue;
+    return Error{fmt::format(
+        "semantics.painted_numbers.limits: '{}' is no speed limit; expected numbers with spaces "
+        "between, as '5 10 30'",
+        limit)};
+  }
   masks.resize(rig.cameras.size());
   auto impl =
       std::make_unique<Impl>(Impl{options, rig, std::move(masks), std::move(reader).value()});
-  impl->limit_values = split(options.limits, ' ');
+  impl->limit_values = std::move(limits);
   return std::unique_ptr<PaintedNumberFrontEnd>(new PaintedNumberFrontEnd(std::move(impl)));
 }
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/pipeline/semantic_front_end.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <deque>
 #include <mutex>
@@ -72,9 +74,15 @@ SemanticFrontEnd::~SemanticFrontEnd() = default;
 Result<std::unique_ptr<SemanticFrontEnd>> SemanticFrontEnd::create(
     const Rig& rig, const std::vector<cv::Mat>& masks, const SemanticFrontEndOptions& options) {
   Result<SegmentationNetwork> network =
-      SegmentationNetwork::loadOrOwn(options.network, "bev_segmentation");
+      SegmentationNetwork::loadOrOwn(options.network, kBevNetwork);
   if (!network) return network.error();
+  if (options.slots.min_width_m > options.slots.max_width_m) {
+    return Error{fmt::format("semantics.slots.min_width_m={:g} is more than max_width_m={:g}",
+                             options.slots.min_width_m, options.slots.max_width_m)};
+  }
   auto impl = std::make_unique<Impl>(rig, options, std::move(network).value());
+  const Status taken = impl->network.takes(impl->stitcher.geometry());
+  if (!taken) return taken.error();
   for (std::size_t c = 0; c < masks.size(); ++c) {
     if (!masks[c].empty()) impl->stitcher.setMask(static_cast<int>(c), masks[c]);
   }

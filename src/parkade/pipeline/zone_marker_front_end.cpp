@@ -56,19 +56,21 @@ Result<std::unique_ptr<ZoneMarkerFrontEnd>> ZoneMarkerFrontEnd::create(
     const Rig& rig, std::vector<cv::Mat> masks, const ZoneMarkerFrontEndOptions& options) {
   std::unique_ptr<ZoneMarkerFrontEnd> none;
   if (!options.enabled) return none;
-  for (const auto& [named, own] : {std::pair(&options.network, "view_segmentation"),
-                                   std::pair(&options.reader, "zone_text")}) {
+  for (const auto& [named, own] :
+       {std::pair(&options.network, kViewNetwork), std::pair(&options.reader, "zone_text")}) {
     if (namedOrOwnModel(*named, own)) continue;
     logInfo("no zone markers: the network {} is not installed", own);
     return none;
   }
   Result<SegmentationNetwork> network =
-      SegmentationNetwork::loadOrOwn(options.network, "view_segmentation");
+      SegmentationNetwork::loadOrOwn(options.network, kViewNetwork);
   if (!network) return network.error();
   const Result<std::string> reader_path = namedOrOwnModel(options.reader, "zone_text");
   if (!reader_path) return reader_path.error();
   Result<ZoneTextReader> reader = ZoneTextReader::load(*reader_path);
   if (!reader) return reader.error();
+  const Status known = reader->knows(options.letters, "semantics.zone_markers.letters");
+  if (!known) return known.error();
   return std::unique_ptr<ZoneMarkerFrontEnd>(new ZoneMarkerFrontEnd(std::make_unique<Impl>(
       Impl{options, rig, std::move(masks), std::move(network).value(), std::move(reader).value(),
            ZoneMarkerTracker(options.tracker), SignFollower(options.signs)})));

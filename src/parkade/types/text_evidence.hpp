@@ -19,14 +19,9 @@ namespace parkade {
 /// Which text several readings of one marker or number agree on: logarithms of its likelihood ratio
 /// to a text that no reading knows, added up. A reading may be wrong altogether, so that a text
 /// which one of them does not list loses only so much; and it may be a part of the text, where
-/// something hid the rest or the face's edge was missed. Where the edge between two faces was
-/// missed, the text stands there again, whole or in part ("D4D4", "D4D"); no marker is called so.
-/// docs/math/zone_markers.md, eqs. (3) and (4).
+/// something hid the rest or a face's edge was missed. docs/math/zone_markers.md, eqs. (3) and (4).
 class TextEvidence {
  public:
-  /// two_faces: whether two faces that carry the text may have been read as one.
-  explicit TextEvidence(bool two_faces = true) : two_faces_(two_faces) {}
-
   /// The readings of one face, best first. A face that is probably plain says nothing of the
   /// marker.
   void add(const std::vector<TextReading>& readings) {
@@ -41,9 +36,6 @@ class TextEvidence {
     if (face.readings.empty()) return;
     for (const TextReading& reading : face.readings) {
       whole_[reading.text] += ratio(kWhole * reading.probability, face);
-      const std::size_t period = periodOf(reading.text);
-      if (period == 0) continue;
-      whole_[reading.text.substr(0, period)] += ratio(kAgain * reading.probability, face);
     }
     faces_.push_back(std::move(face));
     if (faces_.size() > kFaces) faces_.pop_front();
@@ -104,7 +96,6 @@ class TextEvidence {
   };
   static constexpr double kWhole = 0.7;     // share of readings that are of the whole text
   static constexpr double kPart = 0.15;     // of a part of it
-  static constexpr double kAgain = 0.1;     // of two faces that carry it
   static constexpr double kWrong = 0.05;    // wrong altogether
   static constexpr double kAnyText = 0.02;  // what such a reading gives to any one text
   static constexpr double kNegligible = 0.01;
@@ -113,38 +104,13 @@ class TextEvidence {
   static double ratio(double probability, const Face& face) {
     return std::log1p(probability / (kWrong * kAnyText + face.none));
   }
-  // Of the shortest text that, written again and again, holds this one from its first letter on
-  // and once more at least in part; 0 where there is none. A number like 101 is no such text.
-  [[nodiscard]] std::size_t periodOf(const std::string& text) const {
-    if (!two_faces_) return 0;
-    const bool begins_with_letter = !text.empty() && text.front() >= 'A' && text.front() <= 'Z';
-    for (std::size_t period = 2; period < text.size(); ++period) {
-      if (!begins_with_letter && text.size() < 2 * period) break;
-      if (std::equal(text.begin() + static_cast<std::ptrdiff_t>(period), text.end(),
-                     text.begin())) {
-        return period;
-      }
-    }
-    return 0;
-  }
-  // Whether a reading is cut from the text written again and again, and longer than it.
-  [[nodiscard]] bool isRepeated(const std::string& reading, const std::string& text) const {
-    if (!two_faces_ || text.size() < 2 || reading.size() <= text.size()) return false;
-    std::string again;
-    while (again.size() < reading.size() + text.size()) again += text;
-    return again.find(reading) != std::string::npos;
-  }
   [[nodiscard]] double evidenceFor(const std::string& text) const {
-    constexpr double kOdd = 0.02;  // of markers whose name repeats itself
-    const double whole = periodOf(text) == 0 ? kWhole : kOdd * kWhole;
     double sum = 0.0;
     for (const Face& face : faces_) {
       double probability = 0.0;
       for (const TextReading& reading : face.readings) {
         if (reading.text == text) {
-          probability += whole * reading.probability;
-        } else if (isRepeated(reading.text, text)) {
-          probability += kAgain * reading.probability;
+          probability += kWhole * reading.probability;
         } else if (text.find(reading.text) != std::string::npos) {
           probability += kPart * reading.probability;
         }
@@ -154,7 +120,6 @@ class TextEvidence {
     return sum;
   }
 
-  bool two_faces_;
   std::map<std::string, double> whole_;  ///< evidence without parts: picks the candidates
   std::deque<Face> faces_;
 };

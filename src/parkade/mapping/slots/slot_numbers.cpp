@@ -28,7 +28,7 @@ void SlotNumbers::moveWithAnchors(const std::function<SE2(std::int64_t)>& correc
 }
 
 std::optional<SlotNumber> SlotNumbers::within(const std::array<Eigen::Vector2d, 4>& corners) const {
-  TextEvidence text(false);
+  TextEvidence text;
   int readings = 0;
   for (const Number& number : numbers_) {
     if (!contains(corners, number.p)) continue;

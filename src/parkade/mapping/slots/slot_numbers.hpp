@@ -40,7 +40,7 @@ class SlotNumbers {
     Eigen::Vector2d p;
     std::int64_t anchor;
     int readings = 0;
-    TextEvidence text{false};
+    TextEvidence text = {};
   };
   int min_readings_;
   double min_probability_;

@@ -18,6 +18,9 @@ constexpr Bgr kFree = {80, 170, 60};
 constexpr Bgr kOccupied = {70, 70, 190};
 constexpr Bgr kOpen = {60, 190, 210};
 
+constexpr double kMostPixels = 3e8;
+constexpr double kLongestSide = 1e6;  // pixels: libpng writes no longer one
+
 Bgr colourOf(SemanticClass semantic_class) {
   switch (semantic_class) {
     case SemanticClass::kFloor:
@@ -155,13 +158,11 @@ PictureArea pictureArea(const ParkingMap& map) {
 }
 
 Result<Picture> emptyPicture(const ParkingMap& map, double metres_per_px) {
-  const auto [low, high] = pictureArea(map);
-  const Eigen::Vector2d size = ((high - low) / metres_per_px).cwiseMax(1.0);
+  const Eigen::Vector2d size = mapPictureSize(map, metres_per_px);
   if (const Status fits = checkPictureSize(size); !fits) return fits.error();
-  return Picture{
-      cv::Mat(static_cast<int>(std::ceil(size.y())), static_cast<int>(std::ceil(size.x())), CV_8UC3,
-              cv::Scalar(kNothing[0], kNothing[1], kNothing[2])),
-      Eigen::Vector2d(low.x(), high.y()), metres_per_px};
+  return Picture{cv::Mat(static_cast<int>(size.y()), static_cast<int>(size.x()), CV_8UC3,
+                         cv::Scalar(kNothing[0], kNothing[1], kNothing[2])),
+                 mapPictureCorner(map), metres_per_px};
 }
 
 // A cell of one layer over what the pixel shows already: later layers lie on top; seen-and-absent
@@ -190,10 +191,28 @@ GridCell cellUnder(const LayeredGrid& grid, GridLayer layer, const Eigen::Vector
 }  // namespace
 
 Status checkPictureSize(const Eigen::Vector2d& pixels) {
-  constexpr double kMostPixels = 3e8;
-  if (pixels.minCoeff() >= 1.0 && pixels.x() * pixels.y() <= kMostPixels) return {};
-  return Error{fmt::format("the map's picture would have {:.0f} x {:.0f} pixels, more than {:.0f}",
-                           pixels.x(), pixels.y(), kMostPixels)};
+  if (pixels.minCoeff() >= 1.0 && pixels.maxCoeff() <= kLongestSide &&
+      pixels.x() * pixels.y() <= kMostPixels) {
+    return {};
+  }
+  return Error{
+      fmt::format("the map's picture would have {:.0f} x {:.0f} pixels, more than {:.0f} or than "
+                  "{:.0f} along a side",
+                  pixels.x(), pixels.y(), kMostPixels, kLongestSide)};
+}
+
+Eigen::Vector2d mapPictureSize(const ParkingMap& map, double metres_per_px) {
+  const auto [low, high] = pictureArea(map);
+  return ((high - low) / metres_per_px).array().ceil().max(1.0).matrix();
+}
+
+double finestMetresPerPx(const ParkingMap& map) {
+  const auto [low, high] = pictureArea(map);
+  const Eigen::Vector2d size = high - low;
+  const double finest =
+      std::max(std::sqrt(size.x() * size.y() / kMostPixels), size.maxCoeff() / kLongestSide);
+  constexpr double kMargin = 1.01;  // sizes are rounded up to whole pixels
+  return std::max(0.01, std::ceil(100.0 * kMargin * finest) / 100.0);
 }
 
 Result<cv::Mat> drawMap(const ParkingMap& map, double metres_per_px) {

@@ -17,9 +17,14 @@ namespace parkade {
 
 // Maps as pictures for people: CV_8UC3, BGR, x to the right and y up.
 
-/// Fails where a picture of this many pixels across and down is too large: a damaged file may place
-/// cells or slots kilometres apart.
+/// Fails where a picture of this many pixels across and down is too large, also for a PNG: a
+/// damaged file may place cells or slots kilometres apart.
 Status checkPictureSize(const Eigen::Vector2d& pixels);
+
+/// Pixels across and down of the pictures of drawMap() and drawLayer().
+Eigen::Vector2d mapPictureSize(const ParkingMap& map, double metres_per_px = 0.05);
+/// The finest metres per pixel, in hundredths, at which these pictures are not too large.
+double finestMetresPerPx(const ParkingMap& map);
 
 /// The map as a picture: layers in colour, free slots green, occupied ones red, unsure ones yellow.
 /// Fails where the map is too wide for one picture.

@@ -142,5 +142,21 @@ TEST(MapDrawing, MapOfAbsurdExtentIsRefused) {
   EXPECT_THAT(drawLayer(map, GridLayer::kDynamic).error().message, HasSubstr("pixels, more than"));
 }
 
+TEST(MapDrawing, TheFinestPictureThatFitsIsTold) {
+  ParkingMap map = sampleMap();
+  EXPECT_DOUBLE_EQ(finestMetresPerPx(map), 0.01);
+  EXPECT_DOUBLE_EQ(finestMetresPerPx(ParkingMap()), 0.01);
+  map.grid = LayeredGrid();
+  EXPECT_EQ(mapPictureSize(map, 0.1), Eigen::Vector2d(150.0, 50.0));
+  // A square, and a strip that is too long for a PNG's side.
+  for (const Eigen::Vector2d& far :
+       {Eigen::Vector2d(9000.0, 9000.0), Eigen::Vector2d(600000.0, 3.0)}) {
+    map.slots[0].corners[0] = far;
+    const double finest = finestMetresPerPx(map);
+    EXPECT_TRUE(checkPictureSize(mapPictureSize(map, finest)));
+    EXPECT_FALSE(checkPictureSize(mapPictureSize(map, 0.95 * finest)));
+  }
+}
+
 }  // namespace
 }  // namespace parkade

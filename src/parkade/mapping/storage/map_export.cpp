@@ -165,12 +165,16 @@ std::vector<Eigen::Vector2d> convexHull(std::vector<Eigen::Vector2d> points) {
 
 }  // namespace
 
+Eigen::Vector2d nav2PictureSize(const ParkingMap& map) {
+  const LayeredGrid::Bounds bounds = boundsOf(map);
+  return (bounds.max - bounds.min + Eigen::Vector2i::Ones()).cast<double>();
+}
+
 Status exportNav2(const ParkingMap& map, GridLayer layer, const std::string& folder) {
   const LayeredGrid::Bounds bounds = boundsOf(map);
+  if (const Status fits = checkPictureSize(nav2PictureSize(map)); !fits) return fits;
   const int width = bounds.max.x() - bounds.min.x() + 1;
   const int height = bounds.max.y() - bounds.min.y() + 1;
-  const Eigen::Vector2d size = (bounds.max - bounds.min + Eigen::Vector2i::Ones()).cast<double>();
-  if (const Status fits = checkPictureSize(size); !fits) return fits;
   const std::string name(kGridLayerNames[static_cast<std::size_t>(layer)]);
   std::string pgm = fmt::format("P5\n{} {}\n255\n", width, height);
   pgm.reserve(pgm.size() + static_cast<std::size_t>(width) * static_cast<std::size_t>(height));

@@ -12,6 +12,9 @@ namespace parkade {
 // A map in the formats of others, all in the map's local metric frame. Files are written beside
 // their final name and renamed, so that a full disk leaves the old ones.
 
+/// Cells across and down of the pictures of exportNav2().
+Eigen::Vector2d nav2PictureSize(const ParkingMap& map);
+
 /// One layer as Nav2's map_server reads it: FOLDER/LAYER.pgm (trinary: 0 present, 254 seen and
 /// absent, 205 unknown) and LAYER.yaml. All layers of a map share one frame and size. An empty map
 /// gives one unknown cell. Fails where the map is too wide for one picture.

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "parkade/mapping/map_test_support.hpp"
+#include "parkade/mapping/storage/map_drawing.hpp"
 
 namespace parkade {
 namespace {
@@ -47,6 +48,7 @@ TEST(MapExport, Nav2PictureHasTheCellsWhereTheYamlSays) {
 }
 
 TEST(MapExport, EmptyMapGivesOneUnknownCell) {
+  EXPECT_EQ(nav2PictureSize(ParkingMap()), Eigen::Vector2d(1.0, 1.0));
   ASSERT_TRUE(exportNav2(ParkingMap(), GridLayer::kDynamic, folder()));
   EXPECT_THAT(contentOf(folder() + "/dynamic.pgm"), ::testing::StartsWith("P5\n1 1\n"));
 }
@@ -97,6 +99,7 @@ TEST(MapExport, UnwritableFolderIsNamed) {
 TEST(MapExport, MapOfAbsurdExtentIsRefused) {
   ParkingMap map = sampleMap();
   map.grid.add(GridLayer::kParkingLines, {1e6, -1e6}, SemanticClass::kSlotLine, 1.0F);
+  EXPECT_FALSE(checkPictureSize(nav2PictureSize(map)));
   EXPECT_THAT(exportNav2(map, GridLayer::kDynamic, folder()).error().message,
               HasSubstr("pixels, more than"));
 }

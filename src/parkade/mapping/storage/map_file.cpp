@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <set>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include "parkade/mapping/storage/map_rows.hpp"
@@ -17,6 +18,7 @@ namespace parkade {
 namespace {
 
 using sqlite::Database;
+using sqlite::namingRow;
 using sqlite::SqliteError;
 using sqlite::Statement;
 using sqlite::Transaction;
@@ -55,20 +57,25 @@ void checkIdentity(const Database& database, const std::string& path) {
   }
 }
 
-double resolutionOf(const Database& database) {
-  Statement row(database, "SELECT value FROM meta WHERE key = 'resolution'");
-  const std::string text = row.step() ? row.text(0) : "";
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !(value >= 1e-3 && value <= 10.0)) {
-    throw SqliteError(fmt::format("resolution '{}' is not a number from 0.001 to 10 m", text));
-  }
+// A value of table meta, empty where the key is not there.
+std::string metaOf(const Database& database, const char* key) {
+  Statement row(database, "SELECT value FROM meta WHERE key = ?");
+  row.bind(1, std::string_view(key));
+  std::string value;
+  if (!row.step()) return value;
+  namingRow([&] { return fmt::format("meta, key '{}'", key); }, [&] { value = row.text(0); });
   return value;
 }
 
-std::string nameOf(const Database& database) {
-  Statement row(database, "SELECT value FROM meta WHERE key = 'name'");
-  return row.step() ? row.text(0) : "";
+double resolutionOf(const Database& database) {
+  const std::string text = metaOf(database, "resolution");
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !(value >= 1e-3 && value <= 10.0)) {
+    throw SqliteError(fmt::format("meta, key 'resolution': {} is no number from 0.001 to 10 m",
+                                  sqlite::quoted(text)));
+  }
+  return value;
 }
 
 // Makes an empty map beside its name and renames it: a new file is a readable map from the start.
@@ -168,7 +175,7 @@ Result<ParkingMap> loadMap(const std::string& path) {
     checkIdentity(database, path);
     ParkingMap map;
     map.grid = LayeredGrid(resolutionOf(database));
-    map.name = nameOf(database);
+    map.name = metaOf(database, "name");
     readGrid(database, map);
     readSlots(database, map);
     readObjects(database, map);

@@ -122,21 +122,44 @@ TEST_F(MapFileTest, ValuesOutOfRangeAreNamed) {
     std::filesystem::remove(path_);
     return loaded ? std::string() : loaded.error().message;
   };
-  EXPECT_THAT(messageAfter("UPDATE slot SET probability_free = 1.5"), HasSubstr("probability 1.5"));
-  EXPECT_THAT(messageAfter("UPDATE slot SET x0 = 'wide'"), HasSubstr("'x0'"));
-  EXPECT_THAT(messageAfter("UPDATE slot SET x0 = 9e999"), HasSubstr("not a finite number"));
-  EXPECT_THAT(messageAfter("UPDATE slot SET shape = 7"), HasSubstr("unknown slot shape 7"));
-  EXPECT_THAT(messageAfter("UPDATE object SET class = 'ufo'"), HasSubstr("unknown class 'ufo'"));
-  EXPECT_THAT(messageAfter("UPDATE object SET outline = x'00'"), HasSubstr("outline of 1 bytes"));
-  EXPECT_THAT(messageAfter("UPDATE node SET qw = 3"), HasSubstr("quaternion of norm"));
-  EXPECT_THAT(messageAfter("DELETE FROM node WHERE id = 2"), HasSubstr("nodes 1 and 2"));
-  EXPECT_THAT(messageAfter("UPDATE tile SET cells = x'0102'"), HasSubstr("tile is damaged"));
+  EXPECT_THAT(messageAfter("UPDATE slot SET probability_free = 1.5"),
+              HasSubstr("slot 10: probability_free is 1.5"));
+  EXPECT_THAT(messageAfter("UPDATE slot SET x0 = 'wide' WHERE id = 12"),
+              HasSubstr("slot 12: x0 is a text ('wide'), expected a number"));
+  EXPECT_THAT(messageAfter("UPDATE slot SET x0 = 9e999"),
+              HasSubstr("slot 10: x0 is inf, expected a finite number"));
+  EXPECT_THAT(messageAfter("UPDATE slot SET zone = NULL WHERE id = 11"),
+              HasSubstr("slot 11: zone is empty (NULL), expected a text"));
+  EXPECT_THAT(messageAfter("UPDATE slot SET shape = 7"),
+              HasSubstr("slot 10: shape is 7, expected 0 to 2"));
+  EXPECT_THAT(messageAfter("UPDATE object SET class = 'ufo' WHERE id = 4"),
+              HasSubstr("object 4: unknown class 'ufo'"));
+  EXPECT_THAT(messageAfter("UPDATE object SET outline = x'00'"),
+              HasSubstr("object 3: outline has 1 bytes"));
+  EXPECT_THAT(messageAfter("UPDATE node SET qw = 3 WHERE id = 2"),
+              HasSubstr("node 2: the quaternion (qx to qw) has the norm"));
+  EXPECT_THAT(messageAfter("DELETE FROM node WHERE id = 2"),
+              HasSubstr("edge 1 to 2: node 2 is missing"));
+  EXPECT_THAT(messageAfter("UPDATE edge SET kind = 'loop' WHERE to_id = 3"),
+              HasSubstr("edge 2 to 3: kind is a text ('loop'), expected a whole number"));
+  EXPECT_THAT(messageAfter("UPDATE tile SET cells = x'0102' WHERE layer = 2 AND x = 0 AND y = 0"),
+              HasSubstr("tile (0, 0) of layer 2: is damaged"));
+  EXPECT_THAT(messageAfter("UPDATE tile SET x = 9999999 WHERE layer = 2 AND x = 0 AND y = 0"),
+              HasSubstr("tile (9999999, 0) of layer 2: x and y may be"));
   EXPECT_THAT(messageAfter("UPDATE meta SET value = '0' WHERE key = 'resolution'"),
-              HasSubstr("resolution '0'"));
+              HasSubstr("meta, key 'resolution': '0'"));
+  EXPECT_THAT(messageAfter("UPDATE meta SET value = x'00' WHERE key = 'name'"),
+              HasSubstr("meta, key 'name': value is a blob (1 bytes), expected a text"));
   EXPECT_THAT(messageAfter("PRAGMA user_version = 9"), HasSubstr("schema version 9"));
   EXPECT_THAT(messageAfter("ALTER TABLE slot DROP COLUMN last_seen_ns"),
-              HasSubstr("number 15, which is missing"));
+              HasSubstr("slot 10: column number 15 is missing"));
   EXPECT_THAT(messageAfter("DROP TABLE edge"), HasSubstr("edge"));
+}
+
+TEST_F(MapFileTest, TextInMessagesIsShortAndPrintable) {
+  EXPECT_EQ(sqlite::quoted("ufo"), "'ufo'");
+  EXPECT_EQ(sqlite::quoted("a\x1b[31m\xff"), "'a?[31m?'");
+  EXPECT_EQ(sqlite::quoted(std::string(1000, 'x')), "'" + std::string(40, 'x') + "...'");
 }
 
 TEST_F(MapFileTest, IntegrityCheckFindsDamageThatLoadingDoesNotSee) {

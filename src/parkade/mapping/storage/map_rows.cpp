@@ -16,6 +16,7 @@ namespace parkade {
 namespace {
 
 using sqlite::Database;
+using sqlite::namingRow;
 using sqlite::SqliteError;
 using sqlite::Statement;
 
@@ -28,13 +29,13 @@ LayeredGrid::Tile unpackTile(std::span<const std::uint8_t> packed) {
   std::vector<std::uint8_t> raw(kTileBytes);
   const std::size_t size = ZSTD_decompress(raw.data(), raw.size(), packed.data(), packed.size());
   if (ZSTD_isError(size) != 0 || size != kTileBytes) {
-    throw SqliteError("a tile is damaged (it does not unpack to its cells)");
+    throw SqliteError("is damaged: its cells do not unpack");
   }
   LayeredGrid::Tile tile;
   tile.dirty = false;
   for (std::size_t i = 0; i < kCells; ++i) {
     if (raw[kCells + i] >= kNumSemanticClasses) {
-      throw SqliteError(fmt::format("a tile holds the unknown class {}", raw[kCells + i]));
+      throw SqliteError(fmt::format("its cells hold the unknown class {}", raw[kCells + i]));
     }
     tile.cells[i].log_odds = static_cast<std::int8_t>(raw[i]);
     tile.cells[i].semantic_class = static_cast<SemanticClass>(raw[kCells + i]);
@@ -58,7 +59,8 @@ SE3 poseAt(const Statement& row, int first) {
                              row.real(first + 5));
   constexpr double kTolerance = 1e-6;
   if (std::abs(q.norm() - 1.0) > kTolerance) {
-    throw SqliteError(fmt::format("a pose has a quaternion of norm {}", q.norm()));
+    throw SqliteError(
+        fmt::format("the quaternion (qx to qw) has the norm {}, expected 1", q.norm()));
   }
   return {SO3(q), {row.real(first), row.real(first + 1), row.real(first + 2)}};
 }
@@ -66,7 +68,9 @@ SE3 poseAt(const Statement& row, int first) {
 template <class Enum>
 Enum enumAt(const Statement& row, int column, int count, const char* what) {
   const std::int64_t value = row.integer(column);
-  if (value < 0 || value >= count) throw SqliteError(fmt::format("unknown {} {}", what, value));
+  if (value < 0 || value >= count) {
+    throw SqliteError(fmt::format("{} is {}, expected 0 to {}", what, value, count - 1));
+  }
   return static_cast<Enum>(value);
 }
 
@@ -74,7 +78,77 @@ SemanticClass classNamed(const std::string& name) {
   for (std::size_t i = 0; i < kSemanticClassNames.size(); ++i) {
     if (kSemanticClassNames[i] == name) return static_cast<SemanticClass>(i);
   }
-  throw SqliteError(fmt::format("unknown class '{}'", name));
+  throw SqliteError(fmt::format("unknown class {}", sqlite::quoted(name)));
+}
+
+MapSlot slotAt(const Statement& row) {
+  MapSlot s;
+  s.id = row.integer(0);
+  for (int i = 0; i < 4; ++i) {
+    s.corners[static_cast<std::size_t>(i)] = {row.real(1 + 2 * i), row.real(2 + 2 * i)};
+  }
+  s.corner_sigma = row.real(9);
+  s.shape = enumAt<SlotShape>(row, 10, 3, "shape");
+  s.number = row.text(11);
+  s.zone = row.text(12);
+  s.probability_free = row.real(13);
+  if (s.probability_free < 0.0 || s.probability_free > 1.0) {
+    throw SqliteError(fmt::format("probability_free is {}, expected 0 to 1", s.probability_free));
+  }
+  s.observations = row.integer(14);
+  s.last_seen_ns = row.integer(15);
+  return s;
+}
+
+std::vector<Eigen::Vector2d> outlineAt(const Statement& row, int column) {
+  const std::span<const std::uint8_t> bytes = row.blob(column);
+  constexpr std::size_t kPoint = sizeof(Eigen::Vector2d);
+  if (bytes.size() % kPoint != 0) {
+    throw SqliteError(
+        fmt::format("outline has {} bytes, expected a multiple of {}", bytes.size(), kPoint));
+  }
+  std::vector<Eigen::Vector2d> outline;
+  for (std::size_t at = 0; at < bytes.size(); at += kPoint) {
+    double xy[2];
+    std::memcpy(xy, bytes.data() + at, sizeof(xy));
+    outline.emplace_back(xy[0], xy[1]);
+    if (!outline.back().allFinite()) {
+      throw SqliteError(fmt::format("corner {} of outline is not finite", outline.size() - 1));
+    }
+  }
+  return outline;
+}
+
+MapObject objectAt(const Statement& row) {
+  MapObject o;
+  o.id = row.integer(0);
+  o.semantic_class = classNamed(row.text(1));
+  o.position = {row.real(2), row.real(3), row.real(4)};
+  o.heading = row.real(5);
+  o.position_sigma = row.real(6);
+  o.text = row.text(7);
+  o.outline = outlineAt(row, 8);
+  o.observations = row.integer(9);
+  return o;
+}
+
+PoseGraphEdge edgeAt(const Statement& row, const std::set<std::int64_t>& nodes) {
+  PoseGraphEdge e;
+  e.from = row.integer(0);
+  e.to = row.integer(1);
+  for (const std::int64_t id : {e.from, e.to}) {
+    if (nodes.count(id) == 0) throw SqliteError(fmt::format("node {} is missing", id));
+  }
+  e.kind = enumAt<EdgeKind>(row, 2, 2, "kind");
+  e.T_from_to = poseAt(row, 3);
+  const std::span<const std::uint8_t> information = row.blob(10);
+  if (information.size() != sizeof(Matrix6d)) {
+    throw SqliteError(
+        fmt::format("information has {} bytes, expected {}", information.size(), sizeof(Matrix6d)));
+  }
+  std::memcpy(e.information.data(), information.data(), information.size());
+  if (!e.information.allFinite()) throw SqliteError("information is not finite");
+  return e;
 }
 
 }  // namespace
@@ -134,65 +208,36 @@ void writeRows(const Database& database, const ParkingMap& map) {
 }
 
 void readGrid(const Database& database, ParkingMap& map) {
-  Statement tile(database, "SELECT layer, x, y, cells FROM tile");
-  while (tile.step()) {
-    const auto layer = enumAt<GridLayer>(tile, 0, kNumGridLayers, "layer");
-    const std::int64_t x = tile.integer(1);
-    const std::int64_t y = tile.integer(2);
-    if (x < -kFarthestTile || x > kFarthestTile || y < -kFarthestTile || y > kFarthestTile) {
-      throw SqliteError(fmt::format("a tile lies out of range at ({}, {})", x, y));
-    }
-    map.grid.setTile(layer, {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)},
-                     unpackTile(tile.blob(3)));
+  Statement row(database, "SELECT layer, x, y, cells FROM tile");
+  const auto name = [&] {
+    return fmt::format("tile ({}, {}) of layer {}", row.shown(1), row.shown(2), row.shown(0));
+  };
+  while (row.step()) {
+    namingRow(name, [&] {
+      const auto layer = enumAt<GridLayer>(row, 0, kNumGridLayers, "layer");
+      const std::int64_t x = row.integer(1);
+      const std::int64_t y = row.integer(2);
+      if (x < -kFarthestTile || x > kFarthestTile || y < -kFarthestTile || y > kFarthestTile) {
+        throw SqliteError(fmt::format("x and y may be {} at most", kFarthestTile));
+      }
+      map.grid.setTile(layer, {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)},
+                       unpackTile(row.blob(3)));
+    });
   }
 }
 
 void readSlots(const Database& database, ParkingMap& map) {
   Statement row(database, "SELECT * FROM slot ORDER BY id");
   while (row.step()) {
-    MapSlot s;
-    s.id = row.integer(0);
-    for (int i = 0; i < 4; ++i) {
-      s.corners[static_cast<std::size_t>(i)] = {row.real(1 + 2 * i), row.real(2 + 2 * i)};
-    }
-    s.corner_sigma = row.real(9);
-    s.shape = enumAt<SlotShape>(row, 10, 3, "slot shape");
-    s.number = row.text(11);
-    s.zone = row.text(12);
-    s.probability_free = row.real(13);
-    if (s.probability_free < 0.0 || s.probability_free > 1.0) {
-      throw SqliteError(fmt::format("slot {}: probability {}", s.id, s.probability_free));
-    }
-    s.observations = row.integer(14);
-    s.last_seen_ns = row.integer(15);
-    map.slots.push_back(std::move(s));
+    namingRow([&] { return "slot " + row.shown(0); }, [&] { map.slots.push_back(slotAt(row)); });
   }
 }
 
 void readObjects(const Database& database, ParkingMap& map) {
   Statement row(database, "SELECT * FROM object ORDER BY id");
   while (row.step()) {
-    MapObject o;
-    o.id = row.integer(0);
-    o.semantic_class = classNamed(row.text(1));
-    o.position = {row.real(2), row.real(3), row.real(4)};
-    o.heading = row.real(5);
-    o.position_sigma = row.real(6);
-    o.text = row.text(7);
-    const std::span<const std::uint8_t> outline = row.blob(8);
-    if (outline.size() % sizeof(Eigen::Vector2d) != 0) {
-      throw SqliteError(fmt::format("object {}: outline of {} bytes", o.id, outline.size()));
-    }
-    for (std::size_t at = 0; at < outline.size(); at += sizeof(Eigen::Vector2d)) {
-      double xy[2];
-      std::memcpy(xy, outline.data() + at, sizeof(xy));
-      o.outline.emplace_back(xy[0], xy[1]);
-    }
-    for (const Eigen::Vector2d& p : o.outline) {
-      if (!p.allFinite()) throw SqliteError(fmt::format("object {}: outline not finite", o.id));
-    }
-    o.observations = row.integer(9);
-    map.objects.push_back(std::move(o));
+    namingRow([&] { return "object " + row.shown(0); },
+              [&] { map.objects.push_back(objectAt(row)); });
   }
 }
 
@@ -200,27 +245,16 @@ void readGraph(const Database& database, ParkingMap& map) {
   Statement node(database, "SELECT * FROM node ORDER BY id");
   std::set<std::int64_t> ids;
   while (node.step()) {
-    map.nodes.push_back({node.integer(0), node.integer(1), poseAt(node, 2)});
-    ids.insert(map.nodes.back().id);
+    namingRow([&] { return "node " + node.shown(0); },
+              [&] {
+                map.nodes.push_back({node.integer(0), node.integer(1), poseAt(node, 2)});
+                ids.insert(map.nodes.back().id);
+              });
   }
-  Statement row(database, "SELECT * FROM edge ORDER BY rowid");
-  while (row.step()) {
-    PoseGraphEdge e;
-    e.from = row.integer(0);
-    e.to = row.integer(1);
-    if (ids.count(e.from) == 0 || ids.count(e.to) == 0) {
-      throw SqliteError(
-          fmt::format("an edge joins nodes {} and {}, one of which is missing", e.from, e.to));
-    }
-    e.kind = enumAt<EdgeKind>(row, 2, 2, "edge kind");
-    e.T_from_to = poseAt(row, 3);
-    const std::span<const std::uint8_t> information = row.blob(10);
-    if (information.size() != sizeof(Matrix6d)) {
-      throw SqliteError(fmt::format("an edge's information has {} bytes", information.size()));
-    }
-    std::memcpy(e.information.data(), information.data(), information.size());
-    if (!e.information.allFinite()) throw SqliteError("an edge's information is not finite");
-    map.edges.push_back(e);
+  Statement edge(database, "SELECT * FROM edge ORDER BY rowid");
+  while (edge.step()) {
+    namingRow([&] { return fmt::format("edge {} to {}", edge.shown(0), edge.shown(1)); },
+              [&] { map.edges.push_back(edgeAt(edge, ids)); });
   }
 }
 

@@ -7,6 +7,31 @@
 #include <cmath>
 
 namespace parkade::sqlite {
+namespace {
+
+const char* typeName(int type) {
+  switch (type) {
+    case SQLITE_INTEGER:
+      return "a whole number";
+    case SQLITE_FLOAT:
+      return "a number";
+    case SQLITE_TEXT:
+      return "a text";
+    case SQLITE_BLOB:
+      return "a blob";
+    default:
+      return "empty";
+  }
+}
+
+}  // namespace
+
+std::string quoted(std::string_view text) {
+  constexpr std::size_t kMost = 40;
+  std::string plain = "'";
+  for (const char c : text.substr(0, kMost)) plain += c >= ' ' && c <= '~' ? c : '?';
+  return plain + (text.size() > kMost ? "...'" : "'");
+}
 
 Database::Database(const std::string& path, Mode mode) : path_(path) {
   sqlite3* handle = nullptr;
@@ -86,15 +111,16 @@ void Statement::run() {
 std::string Statement::columnName(int column) const {
   // Null where a damaged schema has fewer columns than were asked for.
   const char* name = sqlite3_column_name(handle_.get(), column);
-  return name == nullptr ? fmt::format("number {}, which is missing", column) : name;
+  if (name == nullptr) throw SqliteError(fmt::format("column number {} is missing", column));
+  return name;
 }
 
 void Statement::expectType(int column, int type) const {
   const int found = sqlite3_column_type(handle_.get(), column);
   const bool number_as_whole = type == SQLITE_FLOAT && found == SQLITE_INTEGER;
   if (found != type && !number_as_whole) {
-    throw SqliteError(fmt::format("column '{}' holds a value of another type ({} instead of {})",
-                                  columnName(column), found, type));
+    throw SqliteError(fmt::format("{} is {} ({}), expected {}", columnName(column), typeName(found),
+                                  shown(column), typeName(type)));
   }
 }
 
@@ -107,8 +133,7 @@ double Statement::real(int column) const {
   expectType(column, SQLITE_FLOAT);
   const double value = sqlite3_column_double(handle_.get(), column);
   if (!std::isfinite(value)) {
-    throw SqliteError(fmt::format("column '{}' holds {}, which is not a finite number",
-                                  columnName(column), value));
+    throw SqliteError(fmt::format("{} is {}, expected a finite number", columnName(column), value));
   }
   return value;
 }
@@ -125,6 +150,21 @@ std::span<const std::uint8_t> Statement::blob(int column) const {
   expectType(column, SQLITE_BLOB);
   const auto* bytes = static_cast<const std::uint8_t*>(sqlite3_column_blob(handle_.get(), column));
   return {bytes, static_cast<std::size_t>(sqlite3_column_bytes(handle_.get(), column))};
+}
+
+std::string Statement::shown(int column) const {
+  switch (sqlite3_column_type(handle_.get(), column)) {
+    case SQLITE_INTEGER:
+      return fmt::format("{}", integer(column));
+    case SQLITE_FLOAT:
+      return fmt::format("{}", sqlite3_column_double(handle_.get(), column));
+    case SQLITE_TEXT:
+      return quoted(text(column));
+    case SQLITE_BLOB:
+      return fmt::format("{} bytes", sqlite3_column_bytes(handle_.get(), column));
+    default:
+      return "NULL";
+  }
 }
 
 Transaction::Transaction(Database& database) : database_(database) {

@@ -21,6 +21,20 @@ class SqliteError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A file's text for a message: in quotes, cut to 40 characters, '?' for what cannot be printed.
+std::string quoted(std::string_view text);
+
+/// Runs read(), which takes values from a row; name() begins the message of what it throws:
+/// "slot 3: x0 is a text ('wide'), expected a number".
+template <class Name, class Read>
+void namingRow(const Name& name, const Read& read) {
+  try {
+    read();
+  } catch (const SqliteError& error) {
+    throw SqliteError(name() + ": " + error.what());
+  }
+}
+
 class Database {
  public:
   /// kRead may finish or undo what a killed writer left, where the file can be written.
@@ -59,6 +73,8 @@ class Statement {
   [[nodiscard]] std::string text(int column) const;
   /// Valid until the next step.
   [[nodiscard]] std::span<const std::uint8_t> blob(int column) const;
+  /// A value of any type for a message: 3, 0.5, 'wide', NULL, 12 bytes.
+  [[nodiscard]] std::string shown(int column) const;
 
  private:
   void check(int code, const char* doing) const;

@@ -96,7 +96,13 @@ Result<std::string> namedOrOwnModel(const std::string& path, const std::string& 
 
 Result<std::string> findModel(const std::string& name) {
   std::vector<std::string> folders;
-  if (const char* folder = std::getenv("PARKADE_MODELS")) folders.emplace_back(folder);
+  if (const char* folder = std::getenv("PARKADE_MODELS")) {
+    std::error_code code;
+    if (!std::filesystem::is_directory(folder, code)) {
+      return Error{fmt::format("PARKADE_MODELS={}: there is no such folder", folder)};
+    }
+    folders.emplace_back(folder);
+  }
   // Beside the running program first: an installation may have been moved as a whole.
   std::error_code no_link;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", no_link);

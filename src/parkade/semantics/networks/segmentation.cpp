@@ -32,6 +32,12 @@ struct SegmentationNetwork::Impl {
   cv::Mat resized;
 
   Status forward(const cv::Mat& bgr);
+  // Of a bird's-eye picture at the network's metres per pixel.
+  [[nodiscard]] cv::Size sizeFor(const BevGeometry& geometry) const {
+    const double factor = geometry.metres_per_px / map.metres_per_px;
+    return {static_cast<int>(std::lround(geometry.width_px * factor)),
+            static_cast<int>(std::lround(geometry.height_px * factor))};
+  }
   [[nodiscard]] Status checkOutput(const cv::Size& size) const;
   Status run(const cv::Mat& image, cv::Mat& labels, cv::Mat& confidence, cv::Mat& slot_line);
 };
@@ -102,7 +108,15 @@ Result<SegmentationNetwork> SegmentationNetwork::loadOrOwn(const std::string& cl
                                                            const std::string& own_name) {
   const Result<std::string> path = namedOrOwnModel(class_map_path, own_name);
   if (!path) return path.error();
-  return load(*path);
+  Result<SegmentationNetwork> network = load(*path);
+  if (!network) return network;
+  const bool for_views = network->classMap().metres_per_px <= 0.0;
+  if (for_views == (own_name == kViewNetwork)) return network;
+  return Error{fmt::format("{}: this network is for {}", *path,
+                           for_views ? "camera views (it has no input: metres_per_px), not for "
+                                       "bird's-eye pictures"
+                                     : "bird's-eye pictures (it has input: metres_per_px), not "
+                                       "for camera views")};
 }
 
 Result<SegmentationNetwork> SegmentationNetwork::load(const std::string& class_map_path) {
@@ -119,7 +133,7 @@ Result<SegmentationNetwork> SegmentationNetwork::load(const std::string& class_m
   return SegmentationNetwork(std::move(impl));
 }
 
-Result<BevLabels> SegmentationNetwork::segment(const BevImage& bev) {
+Status SegmentationNetwork::takes(const BevGeometry& geometry) const {
   const ClassMap& map = impl_->map;
   if (map.metres_per_px <= 0.0) {
     return Error{
@@ -127,19 +141,24 @@ Result<BevLabels> SegmentationNetwork::segment(const BevImage& bev) {
                     "metres_per_px), not for bird's-eye pictures",
                     map.path)};
   }
-  const double factor = bev.geometry.metres_per_px / map.metres_per_px;
-  const cv::Size size(static_cast<int>(std::lround(bev.image.cols * factor)),
-                      static_cast<int>(std::lround(bev.image.rows * factor)));
-  if (!map.any_size && (size.width != map.width || size.height != map.height)) {
-    return Error{fmt::format(
-        "{}: the network takes {} x {} px of {} m, the bird's-eye picture has {} x {} px of {} m; "
-        "set bev.width_px, bev.height_px and bev.metres_per_px to match",
-        map.path, map.width, map.height, map.metres_per_px, bev.image.cols, bev.image.rows,
-        bev.geometry.metres_per_px)};
-  }
+  const cv::Size size = impl_->sizeFor(geometry);
+  if (map.any_size || (size.width == map.width && size.height == map.height)) return {};
+  return Error{fmt::format(
+      "{}: the network takes {} x {} px of {} m, the bird's-eye picture has {} x {} px of {} m; "
+      "set bev.width_px, bev.height_px and bev.metres_per_px to match",
+      map.path, map.width, map.height, map.metres_per_px, geometry.width_px, geometry.height_px,
+      geometry.metres_per_px)};
+}
+
+Result<BevLabels> SegmentationNetwork::segment(const BevImage& bev) {
+  const Status taken = takes(bev.geometry);
+  if (!taken) return taken.error();
+  const ClassMap& map = impl_->map;
+  const cv::Size size = impl_->sizeFor(bev.geometry);
   cv::Mat image = bev.image;
   if (size != image.size()) {
-    cv::resize(image, impl_->resized, size, 0, 0, factor < 1.0 ? cv::INTER_AREA : cv::INTER_LINEAR);
+    cv::resize(image, impl_->resized, size, 0, 0,
+               size.width < image.cols ? cv::INTER_AREA : cv::INTER_LINEAR);
     image = impl_->resized;
   }
   const cv::Size padded(map.any_size ? roundUp(size.width) : size.width,

@@ -119,6 +119,12 @@ const std::string& ZoneTextReader::letters() const {
   return impl_->file.letters;
 }
 
+Status ZoneTextReader::knows(const std::string& wanted, const std::string& option) const {
+  if (wanted.find_first_not_of(letters()) == std::string::npos) return {};
+  return Error{fmt::format("{}: '{}' holds more than the letters that {} reads, '{}'", option,
+                           wanted, impl_->file.network, letters())};
+}
+
 Result<ZoneTextReader> ZoneTextReader::load(const std::string& path) {
   Result<TextNetworkFile> file = parseYamlFile<TextNetworkFile>(
       path, [&](const YamlNode& root) { return parseTextNetwork(root, path); });

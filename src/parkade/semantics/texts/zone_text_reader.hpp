@@ -48,6 +48,9 @@ class ZoneTextReader {
 
   [[nodiscard]] const std::string& letters() const;
 
+  /// Whether it knows all characters that an option wants to be read; fails with the option.
+  [[nodiscard]] Status knows(const std::string& wanted, const std::string& option) const;
+
  private:
   struct Impl;
   explicit ZoneTextReader(std::unique_ptr<Impl> impl);
