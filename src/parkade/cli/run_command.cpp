@@ -75,7 +75,9 @@ Status configure(const RunArguments& arguments, PipelineOptions& options) {
   }
   for (const std::string& assignment : arguments.assignments) {
     const Status status = setOption(asOptions(options), assignment);
-    if (!status) throw CLI::ValidationError("--set", status.error().message);
+    if (!status) {
+      throw CLI::ValidationError(status.error().message, CLI::ExitCodes::ValidationError);
+    }
   }
   return {};
 }

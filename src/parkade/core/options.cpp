@@ -126,7 +126,8 @@ class SettingVisitor : public PathVisitor {
   std::vector<std::string> names_;
 };
 
-// Names that share their last part or a good piece of text with the unknown one.
+// "; did you mean: " and names that share their last part or a good piece of text with the unknown
+// one; where there are few options, all of them; nothing where no name is near.
 std::string nearNames(const std::string& unknown, const std::vector<std::string>& names) {
   const auto lastPart = [](const std::string& name) {
     const std::size_t dot = name.rfind('.');
@@ -141,11 +142,12 @@ std::string nearNames(const std::string& unknown, const std::vector<std::string>
       near.push_back(name);
     }
   }
-  if (near.empty()) near = names;
   constexpr std::size_t kMaxShown = 12;
+  if (near.empty() && names.size() <= kMaxShown) near = names;
+  if (near.empty()) return "";
   const bool cut = near.size() > kMaxShown;
   if (cut) near.resize(kMaxShown);
-  return fmt::format("{}{}", fmt::join(near, ", "), cut ? ", ..." : "");
+  return fmt::format("; did you mean: {}{}", fmt::join(near, ", "), cut ? ", ..." : "");
 }
 
 Status setEntries(const OptionTree& options, std::map<std::string, SettingVisitor::Entry> entries) {
@@ -155,8 +157,8 @@ Status setEntries(const OptionTree& options, std::map<std::string, SettingVisito
   for (const auto& [name, entry] : entries) {
     if (entry.used) continue;
     if (!problems.empty()) problems += '\n';
-    problems += fmt::format("{}: unknown option '{}'; did you mean: {}", entry.where, name,
-                            nearNames(name, check.names()));
+    problems +=
+        fmt::format("{}: unknown option '{}'{}", entry.where, name, nearNames(name, check.names()));
   }
   if (!problems.empty()) return Error{problems};
   SettingVisitor apply(entries, true);
