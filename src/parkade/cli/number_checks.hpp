@@ -8,7 +8,8 @@
 
 namespace parkade::cli {
 
-// Checks of options whose messages say what is expected; CLI11's own for numbers print a range of 600 digits.
+// Checks of options whose messages say what is expected; CLI11's own for numbers print a range of
+// 600 digits.
 
 inline CLI::Validator numberCheck(const std::string& expected, bool (*good)(double)) {
   return {[expected, good](std::string& text) {
@@ -31,9 +32,9 @@ inline CLI::Validator positive() {
 /// A file name with the ending of what is written there.
 inline CLI::Validator endsWith(const std::string& ending) {
   return {[ending](std::string& text) {
-            return text.ends_with(ending) ? std::string()
-                                          : "expected a file that ends with '" + ending +
-                                                "', found '" + text + "'";
+            return text.ends_with(ending)
+                       ? std::string()
+                       : "expected a file that ends with '" + ending + "', found '" + text + "'";
           },
           ""};
 }
