@@ -116,10 +116,20 @@ SightText tellText(const std::vector<Parting>& partings) {
   candidates.resize(std::min(kReadings, candidates.size()));
   double plain = 1.0;
   forEachLook(partings, [&](const FaceLook& look) { plain = std::min(plain, plainOf(look)); });
-  double sum = plain;
-  for (const Candidate& c : candidates) sum += c.probability;
-  const double scale = 1.0 / std::max(1.0, sum);
-  for (const Candidate& c : candidates) told.readings.push_back({c.text, scale * c.probability});
+  // What faces show of all texts together is shared out by what speaks for each of them.
+  double shown = 0.0;
+  double weights = 0.0;
+  const auto weightOf = [&](const Candidate& c) {
+    return std::exp(c.score - candidates.front().score);
+  };
+  for (const Candidate& c : candidates) {
+    shown += c.probability;
+    weights += weightOf(c);
+  }
+  const double scale = 1.0 / std::max(1.0, plain + shown);
+  for (const Candidate& c : candidates) {
+    told.readings.push_back({c.text, scale * shown * weightOf(c) / weights});
+  }
   const TextReading none{"", scale * plain};
   const auto place =
       std::find_if(told.readings.begin(), told.readings.end(),
