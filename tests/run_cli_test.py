@@ -125,7 +125,7 @@ class RunErrorTest(unittest.TestCase):
         ]:
             with self.subTest(setting=setting):
                 self.expect_failure(
-                    1, word, arguments=[".", "--out", self.out, "--set", setting]
+                    2, word, arguments=[".", "--out", self.out, "--set", setting]
                 )
 
     def test_bad_config_is_named_with_its_line(self):

@@ -79,7 +79,7 @@ TEST(MapCheck, TilesTooFarAwayAreOneFaultOfTheirLayer) {
               ElementsAre(HasSubstr("tile (100000, 2) of layer road_markers: lies at (320000, ")));
   map.grid.touchTile(GridLayer::kRoadMarkers, {100000, 3});
   map.grid.touchTile(GridLayer::kRoadMarkers, {100000, 4});
-  EXPECT_THAT(findFaults(map), ElementsAre(HasSubstr("and so do 2 others")));
+  EXPECT_THAT(findFaults(map), ElementsAre(HasSubstr("(and 2 more of its tiles)")));
   // The tile that reaches beyond 10 km, and the last one that does not.
   map = testing::sampleMap();
   map.grid.touchTile(GridLayer::kDynamic, {-3125, 0});
