@@ -11,7 +11,7 @@
 #include "parkade/cli/bench_recording.hpp"
 #include "parkade/cli/bench_report.hpp"
 #include "parkade/cli/bench_runs.hpp"
-#include "parkade/cli/number_checks.hpp"
+#include "parkade/cli/option_checks.hpp"
 #include "parkade/cli/sim_record.hpp"
 #include "parkade/io/file.hpp"
 

@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "parkade/cli/bench_conditions.hpp"
+#include "parkade/cli/run_methods.hpp"
 #include "parkade/cli/semantic_garages.hpp"
 #include "parkade/core/options.hpp"
 #include "parkade/core/split.hpp"
@@ -125,7 +126,6 @@ Status addOwn(const PaperBenchOptions& options, BenchPlan& plan) {
 
 // What a run would refuse, before anything is drawn.
 Status checkVariants(const BenchPlan& plan) {
-  static const std::vector<std::string> kMethods = {"vis", "semantic", "avp-slam", "fused"};
   for (const BenchVariant& variant : plan.variants) {
     const std::string& name = variant.method.name;
     if (!variant.import_folder.empty()) {
@@ -134,9 +134,10 @@ Status checkVariants(const BenchPlan& plan) {
       return Error{
           fmt::format("bench: --import {}={}: no such folder", name, variant.import_folder)};
     }
-    if (std::find(kMethods.begin(), kMethods.end(), variant.run_method) == kMethods.end()) {
+    if (std::find(kRunMethods.begin(), kRunMethods.end(), variant.run_method) ==
+        kRunMethods.end()) {
       return Error{fmt::format("bench: --variant {}={}: no such method; known are {}", name,
-                               variant.run_method, fmt::join(kMethods, ", "))};
+                               variant.run_method, fmt::join(kRunMethods, ", "))};
     }
     PipelineOptions options;
     for (const std::string& setting : variant.settings) {

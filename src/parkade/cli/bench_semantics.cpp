@@ -21,6 +21,7 @@
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
 #include "parkade/semantics/networks/class_map.hpp"
+#include "parkade/semantics/networks/segmentation.hpp"
 
 namespace parkade::cli {
 namespace {
@@ -171,7 +172,7 @@ Result<std::vector<std::unique_ptr<SampleScore>>> makeScores(const BenchArgument
   if (!slots) return slots.error();
   scores.push_back(std::move(slots).value());
   const std::string& views = arguments.segmentation.raw_network;
-  if (!true_labels && views.empty() && !findModel("view_segmentation")) return scores;
+  if (!true_labels && views.empty() && !findModel(kViewNetwork)) return scores;
   const std::string faces = pictures.empty() ? pictures : joinPath(pictures, "zone_texts");
   Result<std::unique_ptr<SampleScore>> texts = makeZoneTextScore({views, true_labels, faces, {}});
   if (!texts) return texts.error();

@@ -8,8 +8,8 @@
 
 #include "parkade/bev/stitcher.hpp"
 #include "parkade/cli/command.hpp"
-#include "parkade/cli/number_checks.hpp"
 #include "parkade/cli/open_source.hpp"
+#include "parkade/cli/option_checks.hpp"
 #include "parkade/cli/output_folder.hpp"
 #include "parkade/core/progress.hpp"
 #include "parkade/io/image_file.hpp"
@@ -64,7 +64,7 @@ class BevWriter {
     writer.folder_ = arguments.out;
     if (!arguments.overlay) return writer;
     Result<SegmentationNetwork> network =
-        SegmentationNetwork::loadOrOwn(arguments.network, "bev_segmentation");
+        SegmentationNetwork::loadOrOwn(arguments.network, kBevNetwork);
     if (!network) return network.error();
     writer.network_ = std::make_shared<SegmentationNetwork>(std::move(network).value());
     return writer;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "parkade/cli/command.hpp"
-#include "parkade/cli/number_checks.hpp"
+#include "parkade/cli/option_checks.hpp"
 #ifdef PARKADE_WITH_EVAL_MAP
 #include "parkade/cli/eval_map.hpp"
 #include "parkade/cli/map_truth_file.hpp"

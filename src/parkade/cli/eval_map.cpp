@@ -10,7 +10,7 @@
 #include "parkade/cli/command.hpp"
 #include "parkade/cli/map_path.hpp"
 #include "parkade/cli/map_truth_file.hpp"
-#include "parkade/cli/number_checks.hpp"
+#include "parkade/cli/option_checks.hpp"
 #include "parkade/eval/map_picture.hpp"
 #include "parkade/eval/map_report.hpp"
 #include "parkade/io/file.hpp"

@@ -12,9 +12,10 @@
 
 #include "parkade/cli/command.hpp"
 #include "parkade/cli/map_path.hpp"
-#include "parkade/cli/number_checks.hpp"
 #include "parkade/cli/open_source.hpp"
+#include "parkade/cli/option_checks.hpp"
 #include "parkade/cli/output_folder.hpp"
+#include "parkade/cli/run_methods.hpp"
 #include "parkade/cli/run_outputs.hpp"
 #ifdef PARKADE_WITH_REPORT
 #include "parkade/cli/report_pictures.hpp"
@@ -249,7 +250,7 @@ void addRunCommand(CLI::App& app, int& exit_code) {
           "fused (key points and semantics), vis (key points only), semantic (one camera's "
           "markings, wheels and gyroscope), avp-slam (that scheme; surround markings, "
           "wheels and gyroscope)")
-      ->check(CLI::IsMember({"fused", "semantic", "vis", "avp-slam"}))
+      ->check(CLI::IsMember(kRunMethods))
       ->capture_default_str();
   command->add_option(
       "--map", a->map,

@@ -22,6 +22,14 @@ int roundUp(int value) {
   return (value + kMultiple - 1) / kMultiple * kMultiple;
 }
 
+Error wrongKind(const std::string& path, bool for_views) {
+  return {fmt::format("{}: this network is for {}", path,
+                      for_views ? "camera views (it has no input: metres_per_px), not for "
+                                  "bird's-eye pictures"
+                                : "bird's-eye pictures (it has input: metres_per_px), not for "
+                                  "camera views")};
+}
+
 }  // namespace
 
 struct SegmentationNetwork::Impl {
@@ -112,11 +120,7 @@ Result<SegmentationNetwork> SegmentationNetwork::loadOrOwn(const std::string& cl
   if (!network) return network;
   const bool for_views = network->classMap().metres_per_px <= 0.0;
   if (for_views == (own_name == kViewNetwork)) return network;
-  return Error{fmt::format("{}: this network is for {}", *path,
-                           for_views ? "camera views (it has no input: metres_per_px), not for "
-                                       "bird's-eye pictures"
-                                     : "bird's-eye pictures (it has input: metres_per_px), not "
-                                       "for camera views")};
+  return wrongKind(*path, for_views);
 }
 
 Result<SegmentationNetwork> SegmentationNetwork::load(const std::string& class_map_path) {
@@ -136,10 +140,7 @@ Result<SegmentationNetwork> SegmentationNetwork::load(const std::string& class_m
 Status SegmentationNetwork::takes(const BevGeometry& geometry) const {
   const ClassMap& map = impl_->map;
   if (map.metres_per_px <= 0.0) {
-    return Error{
-        fmt::format("{}: this network is for camera views (it has no input: "
-                    "metres_per_px), not for bird's-eye pictures",
-                    map.path)};
+    return wrongKind(map.path, true);
   }
   const cv::Size size = impl_->sizeFor(geometry);
   if (map.any_size || (size.width == map.width && size.height == map.height)) return {};
