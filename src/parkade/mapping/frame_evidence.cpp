@@ -71,7 +71,9 @@ PackedLabels packLabels(const SemanticFrame& frame) {
     const double away = object.contact.norm();
     box.center = object.contact;
     if (object.semantic_class == SemanticClass::kVehicle && away > 1e-6) {
-      box.center += object.contact / away * (0.5 * size.y());
+      const double turn = object.heading - std::atan2(object.contact.y(), object.contact.x());
+      const double deep = std::abs(std::cos(turn)) * size.x() + std::abs(std::sin(turn)) * size.y();
+      box.center += object.contact / away * (0.5 * deep);
     }
     packed.moving.push_back(box);
   }

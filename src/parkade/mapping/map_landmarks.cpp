@@ -35,16 +35,16 @@ std::optional<LinePoint> lineAt(const LayeredGrid& grid, GridLayer layer, const 
       ++count;
     }
   }
-  constexpr int kLeast = 8;
-  if (count < kLeast) return std::nullopt;
+  const int least = std::min(8, 2 * reach);  // of a line one cell wide, with gaps
+  if (count < least) return std::nullopt;
   mean /= count;
   const Eigen::SelfAdjointEigenSolver<Matrix2d> eigen(squares / count - mean * mean.transpose());
   // A line through the whole neighbourhood has standard deviations of 0.17 m along and of a third
   // of its width or less across.
   constexpr double kLeastAlong = 0.13;  // m
-  constexpr double kMostAcross = 0.06;
+  const double most_across = std::max(0.06, 0.55 * grid.resolution());
   if (eigen.eigenvalues()[1] < kLeastAlong * kLeastAlong ||
-      eigen.eigenvalues()[0] > kMostAcross * kMostAcross) {
+      eigen.eigenvalues()[0] > most_across * most_across) {
     return std::nullopt;
   }
   LinePoint point;
@@ -53,7 +53,7 @@ std::optional<LinePoint> lineAt(const LayeredGrid& grid, GridLayer layer, const 
   point.p_level = p - point.normal * point.normal.dot(p - mean);
   point.semantic_class = semantic_class;
   constexpr double kSigma = 0.012;  // m, of cells of 0.05 m averaged along 0.6 m
-  point.sigma = kSigma;
+  point.sigma = std::max(kSigma, 0.2 * grid.resolution());
   return point;
 }
 

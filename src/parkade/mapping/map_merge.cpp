@@ -68,7 +68,7 @@ void mergeSlot(const MapSlot& later, MapSlot& saved) {
   const bool prevails = later.observations > saved.observations;
   takeText(later.number, prevails, saved.number);
   takeText(later.zone, prevails, saved.zone);
-  if (later.observations > 0) {
+  if (later.observations > 0 || later.isFree() || later.isOccupied()) {
     saved.probability_free = later.probability_free;
     saved.last_seen_ns = later.last_seen_ns;
   }
@@ -120,12 +120,17 @@ void mergeSlots(const ParkingMap& later, const std::vector<SlotMatch>& matches, 
   }
 }
 
+// Where no drive could tell how a painted limit is turned, its heading is 0.
+bool hasHeading(const MapObject& object) {
+  return object.semantic_class != SemanticClass::kSpeedLimitPaint || object.heading != 0.0;
+}
+
 bool sameObject(const MapObject& a, const MapObject& b) {
   constexpr double kDistance = 1.0;  // m
   constexpr double kTurn = 1.0;      // rad: a pillar's faces are markers of their own
   return a.semantic_class == b.semantic_class &&
          (a.position - b.position).head<2>().norm() < kDistance &&
-         std::abs(wrapAngle(a.heading - b.heading)) < kTurn;
+         (!hasHeading(a) || !hasHeading(b) || std::abs(wrapAngle(a.heading - b.heading)) < kTurn);
 }
 
 void mergeObject(const MapObject& later, MapObject& saved) {
@@ -134,7 +139,11 @@ void mergeObject(const MapObject& later, MapObject& saved) {
   saved.position += step;
   for (Vector2d& corner : saved.outline) corner += step.head<2>();
   if (saved.outline.empty()) saved.outline = later.outline;
-  saved.heading = wrapAngle(saved.heading + share * wrapAngle(later.heading - saved.heading));
+  if (!hasHeading(saved)) {
+    saved.heading = later.heading;
+  } else if (hasHeading(later)) {
+    saved.heading = wrapAngle(saved.heading + share * wrapAngle(later.heading - saved.heading));
+  }
   saved.position_sigma = jointSigma(later.position_sigma, saved.position_sigma);
   takeText(later.text, later.observations > saved.observations, saved.text);
   saved.observations += later.observations;

@@ -86,6 +86,42 @@ TEST(MapMerge, AvailabilityIsTheLaterDrivesAndMovingThingsAreLeftOut) {
   EXPECT_FALSE(saved.grid.at(GridLayer::kDynamic, cell).known());
 }
 
+TEST(MapMerge, SlotsThatTheLaterDriveToldByTheirRowsAreAsItSawTheirPlaces) {
+  const ParkingMap whole = mapOf(makePlan(1, 40.0, 0.3, 4));
+  ParkingMap saved = whole;
+  ParkingMap later = whole;
+  for (ParkingMap* map : {&saved, &later}) {
+    for (MapSlot& slot : map->slots) slot.probability_free = map == &saved ? 0.9 : 0.5;
+  }
+  later.slots[0].observations = later.slots[1].observations = 0;
+  later.slots[0].probability_free = 0.1;
+  ASSERT_TRUE(mergeMap(later, saved).ok());
+  EXPECT_EQ(saved.slots[0].probability_free, 0.1);
+  EXPECT_EQ(saved.slots[1].probability_free, 0.9);  // it saw nothing there
+}
+
+TEST(MapMerge, AHeadingThatOneDriveCouldNotTellIsTheOthers) {
+  const ParkingMap whole = mapOf(makePlan(1, 40.0, 0.3, 4));
+  MapObject limit;
+  limit.semantic_class = SemanticClass::kSpeedLimitPaint;
+  limit.position = {10.0, 0.0, 0.0};
+  for (const double known : {0.6, 2.0}) {
+    for (const bool in_saved : {true, false}) {
+      ParkingMap saved = whole;
+      ParkingMap later = whole;
+      for (ParkingMap* map : {&saved, &later}) {
+        map->objects.push_back(limit);
+        map->objects.back().id = 900;
+        map->objects.back().heading = (map == &saved) == in_saved ? known : 0.0;
+      }
+      const Result<MergeReport> report = mergeMap(later, saved);
+      ASSERT_TRUE(report.ok());
+      EXPECT_EQ(report->objects_new, 0);
+      EXPECT_EQ(saved.objects.back().heading, known);
+    }
+  }
+}
+
 TEST(MapMerge, TextsAreThoseOfMoreObservations) {
   const ParkingMap whole = mapOf(makePlan(1, 40.0, 0.3, 4));
   ParkingMap saved = whole;

@@ -225,6 +225,20 @@ TEST(SlotRegistry, FalseAlarmsAreNotTold) {
   EXPECT_TRUE(registry.slots(0).empty());
 }
 
+TEST(SlotRegistry, ACarAtAStandstillMissesNothingTwice) {
+  SlotObservation seen;
+  seen.corners = {Eigen::Vector2d(2, 2), Eigen::Vector2d(4.5, 2), Eigen::Vector2d(4.5, 7),
+                  Eigen::Vector2d(2, 7)};
+  seen.entrance_covariance = 1e-3 * Eigen::Matrix4d::Identity();
+  seen.confidence = 0.9;
+  for (const bool new_views : {false, true}) {
+    SlotRegistry registry({});
+    for (int k = 0; k < 5; ++k) registry.update({seen}, k * kTick, SE2(), 0);
+    for (int k = 5; k < 200; ++k) registry.update({}, k * kTick, SE2(), 0, new_views);
+    EXPECT_EQ(registry.slots(200 * kTick).size(), new_views ? 0U : 1U);
+  }
+}
+
 TEST(SlotRegistry, OfTwoReadingsOfAPlaceTheOneSeenMoreOftenIsTold) {
   const auto slotTo = [](double x) {
     SlotObservation o;

@@ -66,7 +66,7 @@ void LineMap::add(const LinePoint& point) {
     cells_[keyOf(p, kCell)].push_back(index);
     return;
   }
-  // The feature may drift out of its cell by a fraction of kMergeAlong; searches have that margin.
+  // The feature may drift out of its cell by a fraction of kMergeAlong; nearest() has that margin.
   LineFeature& f = features_[static_cast<std::size_t>(best)];
   const double sign = f.normal.dot(point.normal) < 0.0 ? -1.0 : 1.0;
   const double share = weight / (f.weight + weight);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/mapping/layers/unseen_ground.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <opencv2/imgproc.hpp>
@@ -53,8 +54,8 @@ class Raster {
   void look(const Vector2d& eye, double range) {
     const int rays = static_cast<int>(std::ceil(2.0 * M_PI * range / resolution_));
     const int steps = static_cast<int>(range / resolution_);
-    const int opaque = static_cast<int>(std::lround(kOpaque / resolution_));
-    const int thick = static_cast<int>(std::lround(kThick / resolution_));
+    const int opaque = std::max(1, static_cast<int>(std::lround(kOpaque / resolution_)));
+    const int thick = std::max(1, static_cast<int>(std::lround(kThick / resolution_)));
     for (int k = 0; k < rays; ++k) {
       const double angle = 2.0 * M_PI * k / rays;
       const Vector2d step(std::cos(angle), std::sin(angle));

@@ -46,6 +46,19 @@ TEST_F(UnseenGround, WhatIsSeenThroughADoorStays) {
   EXPECT_EQ(at(grid, 4.0, 4.0), SemanticClass::kUnknown);
 }
 
+TEST_F(UnseenGround, CellsMayBeWide) {
+  for (const double resolution : {0.1, 0.25, 0.5}) {
+    LayeredGrid wide(resolution);
+    fill(wide, SemanticClass::kFloor, {0.0, -6.0}, {20.0, 6.0});
+    fill(wide, SemanticClass::kWall, {0.0, 3.0}, {20.0, 3.5});
+    forgetUnseenGround(way, kRange, wide);
+    EXPECT_EQ(at(wide, 10.0, 5.2), SemanticClass::kUnknown) << resolution;
+    EXPECT_EQ(at(wide, 10.0, 3.2), SemanticClass::kWall) << resolution;
+    EXPECT_EQ(at(wide, 10.0, 2.2), SemanticClass::kFloor) << resolution;
+    EXPECT_EQ(at(wide, 10.0, -5.2), SemanticClass::kFloor) << resolution;
+  }
+}
+
 TEST_F(UnseenGround, SpecksAndPillarsHideNothingForGood) {
   fill(grid, SemanticClass::kFloor, {0.0, 3.0}, {20.0, 3.3});
   fill(grid, SemanticClass::kWall, {5.0, 3.0}, {5.05, 3.05});

@@ -184,7 +184,7 @@ SlotRegistry::SlotRegistry(SlotRegistry&&) noexcept = default;
 SlotRegistry& SlotRegistry::operator=(SlotRegistry&&) noexcept = default;
 
 void SlotRegistry::update(const std::vector<SlotObservation>& observations, TimeNs t_ns,
-                          const SE2& T_world_vehicle, std::int64_t anchor) {
+                          const SE2& T_world_vehicle, std::int64_t anchor, bool new_view) {
   Impl& m = *impl_;
   constexpr double kStep = 0.1;  // m
   const Eigen::Vector2d place = T_world_vehicle.translation();
@@ -228,6 +228,7 @@ void SlotRegistry::update(const std::vector<SlotObservation>& observations, Time
   for (std::size_t j = 0; j < all.size(); ++j) {
     if (!seen_used[j]) m.add(all[j], t_ns, anchor);
   }
+  if (!new_view) return;
   m.countMisses(T_world_vehicle, track_used, old_count);
   m.forgetOdd();
 }
@@ -283,27 +284,51 @@ std::vector<MapSlot> SlotRegistry::Impl::seenSlots(TimeNs now_ns,
   return seen;
 }
 
+namespace {
+
+// Slots stay told that only a filling which was refused would have replaced. seen: those told;
+// added: the fillings that were not refused.
+void keepBeatenByNone(const std::vector<MapSlot>& seen, const std::vector<MapSlot>& refused,
+                      const std::vector<MapSlot>& added, std::vector<std::int64_t>& replaced) {
+  constexpr double kTouches = 0.15;  // less is how neighbours lie
+  const auto liesOn = [](const MapSlot& slot, const std::vector<MapSlot>& others) {
+    return std::any_of(others.begin(), others.end(), [&](const MapSlot& other) {
+      return overlapShare(slot.corners, other.corners) > kTouches;
+    });
+  };
+  for (const MapSlot& slot : seen) {
+    if (liesOn(slot, refused) && !liesOn(slot, added)) std::erase(replaced, slot.id);
+  }
+}
+
+}  // namespace
+
 void SlotRegistry::completeRows(TimeNs now_ns, const std::vector<MapObject>& objects,
                                 const LayeredGrid& grid) {
   Impl& m = *impl_;
   const std::vector<Eigen::Vector2d> driven = m.drivenWay();
   const std::vector<MapSlot> before = std::exchange(m.of_rows, {});
   m.replaced.clear();
-  RowCompletion rows =
-      parkade::completeRows(m.seenSlots(now_ns, objects), objects, grid, m.options.rows);
+  const std::vector<MapSlot> seen = m.seenSlots(now_ns, objects);
+  RowCompletion rows = parkade::completeRows(seen, objects, grid, m.options.rows);
   m.replaced = std::move(rows.replaced);
+  std::vector<MapSlot> refused;
   for (MapSlot& slot : rows.added) {
     if (!m.isPlausible(slot, objects, driven)) {
       std::erase(m.replaced, slot.id);  // what was told and cannot be moved stays as it is
+      if (slot.id == 0) refused.push_back(slot);
       continue;
     }
     const auto same = std::find_if(before.begin(), before.end(), [&](const MapSlot& other) {
       constexpr double kSame = 0.5;
-      return overlapShare(slot.corners, other.corners) > kSame;
+      return overlapShare(slot.corners, other.corners) > kSame &&
+             std::none_of(m.of_rows.begin(), m.of_rows.end(),
+                          [&](const MapSlot& given) { return given.id == other.id; });
     });
     if (slot.id == 0) slot.id = same != before.end() ? same->id : m.next_id++;
     m.of_rows.push_back(slot);
   }
+  keepBeatenByNone(seen, refused, m.of_rows, m.replaced);
 }
 
 std::vector<MapSlot> SlotRegistry::slots(TimeNs now_ns,

@@ -66,9 +66,10 @@ class SlotRegistry {
   SlotRegistry(SlotRegistry&&) noexcept;
   SlotRegistry& operator=(SlotRegistry&&) noexcept;
 
-  /// Enters what one frame shows. anchor: the pose that new slots hang on.
+  /// Enters what one frame shows. anchor: the pose that new slots hang on. new_view: false where
+  /// the vehicle stands as in the frame before, so that what is not seen was not missed once more.
   void update(const std::vector<SlotObservation>& observations, TimeNs t_ns,
-              const SE2& T_world_vehicle, std::int64_t anchor);
+              const SE2& T_world_vehicle, std::int64_t anchor, bool new_view = true);
 
   /// Moves every slot with its anchor, then merges those that turn out to be one.
   /// correction(anchor): T_new_old, in the world.

@@ -126,8 +126,14 @@ void drawSign(Picture& picture, const MapObject& object) {
   constexpr double kHalf = 0.25;  // m
   const double scale = 1.0 / picture.metres_per_px;
   const int half = std::max(1, static_cast<int>(std::lround(kHalf * scale)));
-  const int u = static_cast<int>(std::floor((object.position.x() - picture.top_left.x()) * scale));
-  const int v = static_cast<int>(std::floor((picture.top_left.y() - object.position.y()) * scale));
+  const Eigen::Vector2d at((object.position.x() - picture.top_left.x()) * scale,
+                           (picture.top_left.y() - object.position.y()) * scale);
+  if (!(at.minCoeff() > -half - 1.0 && at.x() < picture.image.cols + half &&
+        at.y() < picture.image.rows + half)) {
+    return;  // objects need not lie inside
+  }
+  const int u = static_cast<int>(std::floor(at.x()));
+  const int v = static_cast<int>(std::floor(at.y()));
   const cv::Rect place = cv::Rect(u - half, v - half, 2 * half + 1, 2 * half + 1) &
                          cv::Rect(0, 0, picture.image.cols, picture.image.rows);
   if (!place.empty()) picture.image(place).setTo(pixelOf(colourOf(object.semantic_class)));

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include <opencv2/core.hpp>
 #include <set>
 
 #include "parkade/mapping/map_test_support.hpp"
@@ -50,6 +51,23 @@ TEST(MapDrawing, SignsAreSquaresOfTheirOwn) {
   ASSERT_TRUE(picture);
   EXPECT_EQ(picture->at<cv::Vec3b>(10, 10), colourNamed(mapLegend(), "guide sign"));
   EXPECT_NE(picture->at<cv::Vec3b>(10, 16), colourNamed(mapLegend(), "guide sign"));
+}
+
+TEST(MapDrawing, SignsOutsideOfThePictureAreLeftOut) {
+  ParkingMap map = sampleMap();
+  const Result<cv::Mat> without = drawMap(map, 0.1);
+  ASSERT_TRUE(without);
+  MapObject sign;
+  sign.semantic_class = SemanticClass::kGuideSign;
+  for (const double x : {-40.0, 400.0, 1e300, -1e300}) {
+    sign.position = {x, x, 2.2};
+    map.objects.push_back(sign);
+  }
+  const Result<cv::Mat> with = drawMap(map, 0.1);
+  ASSERT_TRUE(with);
+  ASSERT_EQ(with->size(), without->size());
+  const cv::Mat changed = *with != *without;
+  EXPECT_EQ(cv::countNonZero(changed.reshape(1)), 0);
 }
 
 TEST(MapDrawing, ALayersPictureHoldsThatLayerAloneInTheColoursOfItsLegend) {

@@ -74,7 +74,7 @@ const char* shapeName(SlotShape shape) {
 
 json slotFeature(const MapSlot& slot) {
   return {{"type", "Feature"},
-          {"id", slot.id},
+          {"id", fmt::format("slot-{}", slot.id)},
           {"geometry", {{"type", "Polygon"}, {"coordinates", ringJson(slot.corners)}}},
           {"properties",
            {{"kind", "parking_space"},
@@ -94,7 +94,7 @@ json objectFeature(const MapObject& object) {
     geometry = {{"type", "Polygon"}, {"coordinates", ringJson(object.outline)}};
   }
   return {{"type", "Feature"},
-          {"id", object.id},
+          {"id", fmt::format("object-{}", object.id)},
           {"geometry", geometry},
           {"properties",
            {{"kind", kSemanticClassNames[static_cast<std::size_t>(object.semantic_class)]},

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 
 #include "parkade/mapping/map_test_support.hpp"
@@ -70,6 +71,18 @@ TEST(MapExport, GeoJsonHasClosedCounterClockwiseRings) {
   }
   EXPECT_NEAR(twice_area, 2.0 * 12.5, 1e-9);
   EXPECT_EQ(document["features"][0]["properties"]["kind"], "parking_space");
+}
+
+TEST(MapExport, NoTwoFeaturesOfTheGeoJsonAreCalledAlike) {
+  ParkingMap map = sampleMap();
+  ASSERT_FALSE(map.objects.empty());
+  map.objects[0].id = map.slots[0].id;
+  const std::string path = folder() + "/ids.geojson";
+  ASSERT_TRUE(exportGeoJson(map, path));
+  const nlohmann::json document = nlohmann::json::parse(contentOf(path));
+  std::set<std::string> ids;
+  for (const auto& feature : document["features"]) ids.insert(feature["id"].get<std::string>());
+  EXPECT_EQ(ids.size(), map.slots.size() + map.objects.size());
 }
 
 TEST(MapExport, Lanelet2HasASpacePerSlotFromAisleToRear) {

@@ -55,6 +55,11 @@ void checkIdentity(const Database& database, const std::string& path) {
     throw SqliteError(fmt::format("{}: the map has schema version {}, this program reads {}", path,
                                   version, kMapSchemaVersion));
   }
+  // One made to harm could have a reader work for ever.
+  Statement odd(database, "SELECT count(*) FROM sqlite_master WHERE type IN ('view', 'trigger')");
+  if (odd.step() && odd.integer(0) > 0) {
+    throw SqliteError(path + ": holds views or triggers, as no map does");
+  }
 }
 
 // A value of table meta, empty where the key is not there.

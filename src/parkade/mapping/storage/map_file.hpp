@@ -35,8 +35,8 @@ class MapFile {
 };
 
 /// Reads a map. A file that is damaged, foreign, of another version or that holds values outside
-/// their range gives an Error that says which; it never crashes and never allocates more than a
-/// small multiple of the file's size.
+/// their range gives an Error that says which; it never crashes and allocates no more than the
+/// file's tiles do unpacked (a uniform one of 8 KB takes some 20 bytes of it).
 Result<ParkingMap> loadMap(const std::string& path);
 
 /// Walks every page and index of the file, as loading does not. Fails with what is damaged.

@@ -109,6 +109,18 @@ TEST_F(MapFileTest, ForeignAndMissingFilesAreNamed) {
   EXPECT_THAT(MapFile::open(other).error().message, HasSubstr("no Parkade map"));
 }
 
+TEST_F(MapFileTest, ViewsAndTriggersAreRefused) {
+  ParkingMap map = sampleMap();
+  save(map);
+  sqlite::Database database(path_, sqlite::Database::Mode::kReadWriteCreate);
+  database.execute(
+      "CREATE VIEW endless AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL "
+      "SELECT i + 1 FROM n) SELECT i FROM n");
+  const Result<ParkingMap> loaded = loadMap(path_);
+  ASSERT_FALSE(loaded);
+  EXPECT_THAT(loaded.error().message, HasSubstr("views or triggers"));
+}
+
 TEST_F(MapFileTest, ValuesOutOfRangeAreNamed) {
   const auto messageAfter = [&](const std::string& sql) {
     ParkingMap map = sampleMap();
