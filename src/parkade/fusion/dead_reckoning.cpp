@@ -45,7 +45,7 @@ void DeadReckoning::stand(const Eigen::Vector3d& gyro, const Eigen::Vector3d& ac
   still_s_ += dt;
   // The body rocks after it stops.
   constexpr double kSettle = 0.3;
-  if (still_s_ < kSettle && bias_seconds_ > 0.0) return;
+  if (still_s_ < kSettle && way_ > 0.0) return;
   bias_seconds_ += dt;
   constexpr double kMemory = 30.0;  // s; the bias wanders
   const double share = dt / std::min(bias_seconds_, kMemory);
@@ -104,6 +104,20 @@ void DeadReckoning::advance(const ImuSample& sample, TimeNs until) {
     Q(2, 2) = square(kDegree * options_.gyro_density_deg) * dt +
               2.0 * square(bias_sigma) * toSeconds(until - since) * dt;
   }
+  // What the car may do unnoticed while a sensor is silent: its variance is that of the whole
+  // silence.
+  constexpr double kUnseenTurn = 0.5;   // rad/s
+  constexpr double kUnseenAccel = 1.0;  // m/s^2
+  const auto silence = [&](TimeNs last) {
+    const double seconds = toSeconds(until - last);
+    return seconds > options_.max_silence_s ? seconds : 0.0;
+  };
+  if (const double s = silence(sample.t_ns); s > 0.0) {
+    Q(2, 2) += square(kUnseenTurn) * (square(s) - square(std::max(0.0, s - dt)));
+  }
+  if (const double s = silence(speeds_.back().t_ns); s > 0.0) {
+    Q(0, 0) += square(0.5 * kUnseenAccel) * (std::pow(s, 4) - std::pow(std::max(0.0, s - dt), 4));
+  }
   const Eigen::Matrix3d F = increment.inverse().adjoint();
   covariance_ = F * covariance_ * F.transpose() + Q;
   t_ns_ = until;
@@ -139,9 +153,14 @@ PoseEstimate DeadReckoning::poseAt(TimeNs t_ns) {
     e.reason = "the car stands: learning the gyroscope's bias";
     return e;
   }
-  const bool silent = toSeconds(t_ns - speeds_.back().t_ns) > options_.max_wheel_age_s;
-  e.health = silent ? Health::kLost : Health::kTracking;
-  if (silent) e.reason = "the wheels are silent";
+  const bool no_wheels = toSeconds(t_ns - speeds_.back().t_ns) > options_.max_silence_s;
+  const bool no_imu = toSeconds(t_ns - imu_.front().t_ns) > options_.max_silence_s;
+  e.health = no_wheels || no_imu ? Health::kLost : Health::kTracking;
+  if (no_wheels) {
+    e.reason = "the wheels are silent";
+  } else if (no_imu) {
+    e.reason = "the inertial unit is silent";
+  }
   const double pitch = std::atan2(-up_.x(), std::hypot(up_.y(), up_.z()));
   const double roll = std::atan2(up_.y(), up_.z());
   e.T_odom_vehicle =
@@ -155,7 +174,8 @@ PoseEstimate DeadReckoning::poseAt(TimeNs t_ns) {
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) level(kAt[i], kAt[j]) = covariance_(i, j);
   }
-  level(2, 2) = square(kHeight) * (1.0 + way_);
+  // The floor is taken for flat, and the first pose for level.
+  level(2, 2) = square(kHeight) * (1.0 + way_) + square(kTilt) * position_.squaredNorm();
   level(3, 3) = level(4, 4) = square(kTilt);
   const Eigen::Matrix3d R = SO3::fromYawPitchRoll(0.0, pitch, roll).inverse().matrix();
   Matrix6d turn = Matrix6d::Zero();

@@ -19,7 +19,7 @@ struct DeadReckoningOptions {
   double bias_unknown_deg_s = 0.3;
   double still_mps = 0.005;
   double attitude_s = 4.0;
-  double max_wheel_age_s = 0.2;
+  double max_silence_s = 0.2;
 
   void visit(OptionVisitor& v) {
     v.field("start_s", start_s, "s", "A car that stands this long at the start tells its biases.",
@@ -36,8 +36,10 @@ struct DeadReckoningOptions {
     v.field("still_mps", still_mps, "m/s", "Wheels slower than this stand.", 0.0, 0.5);
     v.field("attitude_s", attitude_s, "s",
             "Time over which the accelerometer mends pitch and roll.", 0.1, 100.0);
-    v.field("max_wheel_age_s", max_wheel_age_s, "s",
-            "Older wheel speeds are not used: the car is then lost.", 0.01, 10.0);
+    v.field("max_silence_s", max_silence_s, "s",
+            "Where the wheels or the inertial unit are silent for longer, the car is lost: their "
+            "last readings go on, and are believed ever less.",
+            0.01, 10.0);
   }
 };
 
@@ -54,7 +56,7 @@ class DeadReckoning {
 
   /// The pose at an instant not before the last one asked for, by the readings up to it (and the
   /// first ones after it, where they are there). kInitialising until wheels and IMU have been
-  /// heard; kLost while the wheels are silent.
+  /// heard; kLost while one of them is silent.
   PoseEstimate poseAt(TimeNs t_ns);
 
  private:

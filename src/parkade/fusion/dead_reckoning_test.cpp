@@ -104,12 +104,41 @@ TEST(DeadReckoning, SaysWhatIsMissing) {
   EXPECT_THAT(reckoning.poseAt(20).reason, testing::HasSubstr("wheel"));
 }
 
-TEST(DeadReckoning, SilentWheelsAreALostCar) {
+// The covariance of (x, y, yaw).
+Eigen::Vector3d sigmasOf(const PoseEstimate& e) {
+  return {std::sqrt(e.covariance(0, 0)), std::sqrt(e.covariance(1, 1)),
+          std::sqrt(e.covariance(5, 5))};
+}
+
+TEST(DeadReckoning, ACarIsLostAndSaysSoWhileASensorIsSilent) {
+  Drive d;
+  DeadReckoning reckoning(SE3(), {});
+  const PoseEstimate before = run(d, reckoning);
+  const double end = d.stand_s + d.drive_s;
+  PoseEstimate e;
+  for (int k = 1; k <= 30; ++k) e = reckoning.poseAt(fromSeconds(end + 0.1 * k));
+  EXPECT_EQ(e.health, Health::kLost);
+  // It may have turned away and braked in these three seconds.
+  EXPECT_GT(sigmasOf(e).z(), 1.0);
+  EXPECT_GT(sigmasOf(e).head<2>().norm(), sigmasOf(before).head<2>().norm() + 3.0);
+}
+
+TEST(DeadReckoning, WheelsGoOnWhileTheInertialUnitIsSilent) {
   Drive d;
   DeadReckoning reckoning(SE3(), {});
   run(d, reckoning);
-  const TimeNs later = fromSeconds(d.stand_s + d.drive_s + 1.0);
-  EXPECT_EQ(reckoning.poseAt(later).health, Health::kLost);
+  const double end = d.stand_s + d.drive_s;
+  PoseEstimate e;
+  for (int k = 1; k <= 100; ++k) {
+    WheelSample wheel;
+    wheel.t_ns = fromSeconds(end + 0.01 * k);
+    wheel.rear_left_mps = wheel.rear_right_mps = 2.0;
+    reckoning.addWheel(wheel);
+    if (k % 10 == 0) e = reckoning.poseAt(wheel.t_ns);
+  }
+  EXPECT_EQ(e.health, Health::kLost);
+  EXPECT_THAT(e.reason, testing::HasSubstr("inertial unit"));
+  EXPECT_GT(sigmasOf(e).z(), 0.4);
 }
 
 }  // namespace

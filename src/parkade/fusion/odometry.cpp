@@ -50,8 +50,11 @@ PlanarIncrement planarIncrement(const PoseEstimate& before, const PoseEstimate& 
   const Eigen::Vector4d least = factor * Eigen::Vector4d(place, place, yaw, height);
   Eigen::Matrix4d F = Eigen::Matrix4d::Identity();
   F.topLeftCorner<3, 3>() = result.T_before_after.inverse().adjoint();
+  // Without pictures it tells what the inertial unit alone knows, and no more than that.
+  const double share =
+      after.health == Health::kLost ? std::max(1.0, options.told_share) : options.told_share;
   const Eigen::Matrix4d growth =
-      options.told_share * (planarCovariance(after) - F * planarCovariance(before) * F.transpose());
+      share * (planarCovariance(after) - F * planarCovariance(before) * F.transpose());
   // Whitened by the floor, eigenvalues below one become one.
   const Eigen::Vector4d scale = least.cwiseMax(1e-12).cwiseSqrt();
   const Eigen::Vector4d unscale = scale.cwiseInverse();

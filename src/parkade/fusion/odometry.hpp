@@ -30,7 +30,8 @@ struct OdometryNoiseOptions {
             "All of them grow by this where the odometry says that it is degraded or lost.", 1.0,
             1000.0);
     v.field("told_share", told_share, "ratio",
-            "The growth of the odometry's own variance counts by this share: it is told too large.",
+            "The growth of the odometry's own variance counts by this share, for it is told too "
+            "large (but by all of it while the odometry is lost, and where it starts again).",
             0.01, 10.0);
   }
 };

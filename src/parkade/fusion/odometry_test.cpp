@@ -54,5 +54,13 @@ TEST(Odometry, CovarianceIsTheFloorOrTheGrowth) {
   EXPECT_GT(planarIncrement(a, b, options).covariance(0, 0), 20.0 * Q(0, 0));
 }
 
+TEST(Odometry, WhereItIsLostAllOfItsGrowthCounts) {
+  const PoseEstimate a = estimateAt(0.0, SE3());
+  PoseEstimate b = estimateAt(0.1, SE3(SO3(), {1.0, 0.0, 0.0}));
+  b.covariance(1, 1) = 0.04;
+  b.health = Health::kLost;
+  EXPECT_NEAR(planarIncrement(a, b, {}).covariance(1, 1), 0.04, 1e-4);
+}
+
 }  // namespace
 }  // namespace parkade

@@ -22,7 +22,7 @@ struct AvpSlamOptions {
   double loop_share = 0.35;
   double loop_sigma_m = 1.0;
   PointIcpOptions icp;
-  OdometryNoiseOptions odometry{.translation = 0.02, .yaw_deg = 0.05};
+  OdometryNoiseOptions odometry{.translation = 0.02, .yaw_deg = 0.05, .told_share = 1.0};
 
   void visit(OptionVisitor& v) {
     v.field("local_map_m", local_map_m, "m", "A local map holds this much of the drive.", 2.0,

@@ -59,8 +59,13 @@ void FusedMapper::Impl::predict(const PoseEstimate& now) {
     return;
   }
   // After a start of its own the odometry goes on in its frame, as unsure as it then is.
-  if (odometry->health == Health::kInitialising) rows.forget();
-  const PlanarIncrement step = planarIncrement(*tracked, now, options.odometry);
+  OdometryNoiseOptions noise = options.odometry;
+  if (odometry->health == Health::kInitialising) {
+    rows.forget();
+    compass_scatter = CompassScatter(options.compass.sigma_deg * kDegree);
+    noise.told_share = std::max(1.0, noise.told_share);
+  }
+  const PlanarIncrement step = planarIncrement(*tracked, now, noise);
   tracked = now;
   filter.predict(step.T_before_after, step.dz, step.covariance);
   travelled += step.T_before_after.translation().norm();
@@ -102,6 +107,10 @@ void FusedMapper::Impl::beginStretch(const View& view) {
     const auto oldest = std::find_if(
         filter.anchors().begin(), filter.anchors().end(),
         [this](std::int64_t id) { return id != axes && !(saved && id == saved->place); });
+    if (*oldest >= open().anchor) return;  // all others are views that wait for their features
+    for (Stretch& s : stretches) {
+      if (s.anchor == *oldest) s.submap = Submap();  // nothing is laid on it any more
+    }
     filter.removeAnchor(*oldest);
   }
 }
@@ -114,7 +123,10 @@ void FusedMapper::Impl::enterSubmap(const SemanticFrame& frame, const View& view
 
 void FusedMapper::Impl::followCorrections() {
   // The world is the saved map's: what is learned of where that lies moves all the rest.
-  if (located()) rebase(filter.anchor(saved->place).T_world_vehicle.inverse(), 0.0);
+  if (located()) {
+    const GroundPose place = filter.anchor(saved->place);
+    rebase(place.T_world_vehicle.inverse(), -place.z);
+  }
   std::unordered_map<std::int64_t, SE2> moved;
   constexpr double kNoticeable = 0.002;
   double farthest = 0.0;
@@ -147,9 +159,15 @@ void FusedMapper::Impl::enterMaps(const SemanticFrame& frame,
     global.update(labels, t_ns, open().anchor, between(open().anchor, view));
   }
   wall_points.add(frame.raised, open().anchor, between(open().anchor, view));
-  slots.update(frame.slots, t_ns, pose, open().anchor);
+  // What a car at a standstill sees again and again says nothing new for or against what it knows.
+  constexpr double kStandstill = 0.1;  // m
+  const bool moved_on = view.travelled - last_judged >= kStandstill;
+  if (moved_on) last_judged = view.travelled;
+  static const std::vector<LevelView> kNoViews;
+  slots.update(frame.slots, t_ns, pose, open().anchor, moved_on);
   objects.update(frame.objects, pose, filter.anchor(view.anchor).z, open().anchor,
-                 frame.labels.labels.empty() ? nullptr : &frame.labels, level_views);
+                 moved_on && !frame.labels.labels.empty() ? &frame.labels : nullptr,
+                 moved_on ? level_views : kNoViews);
 }
 
 std::vector<Eigen::Vector3d> FusedMapper::Impl::wallPlaces() const {

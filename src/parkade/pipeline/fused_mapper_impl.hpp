@@ -129,6 +129,7 @@ class FusedMapper::Impl {
   std::vector<PoseGraphEdge> edges;
   double last_entered = -1e9;
   double last_registered = -1e9;
+  double last_judged = -1e9;
   bool corrected = false;
   LocalMap local;
   GlobalMap global;

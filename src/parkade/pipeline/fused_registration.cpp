@@ -34,10 +34,15 @@ void FusedMapper::Impl::addLoopEdge(const Stretch& stretch, const Registration& 
   edge.kind = EdgeKind::kLoop;
   const SE2 T_open_vehicle = between(open().anchor, view);
   edge.T_from_to = (fit.T_map_vehicle * T_open_vehicle.inverse()).toSE3();
+  // The registration's is of the vehicle's pose, the edge's of the anchor's.
+  const Eigen::Matrix3d A = T_open_vehicle.inverse().adjoint();
+  const Eigen::Matrix3d information = A.transpose() * fit.information * A;
   edge.information.setZero();
   constexpr int kAt[3] = {0, 1, 5};
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) edge.information(kAt[i], kAt[j]) = fit.information(i, j);
+    for (int j = 0; j < 3; ++j) {
+      edge.information(kAt[i], kAt[j]) = 0.5 * (information(i, j) + information(j, i));
+    }
   }
   edges.push_back(edge);
 }

@@ -119,6 +119,10 @@ void FusedMapper::Impl::settleInSavedMap(const Registration& fit, const View& vi
       saved->place, view.anchor, fit.T_map_vehicle,
       withSharedNoise(fit.information, sharedNoise(o.found_sigma_m, o.found_sigma_deg)),
       options.submaps.gate_probability);
+  // The map's car stood that high, at the nearest place of its way.
+  constexpr double kNearestPlace = 0.1;  // m
+  filter.updateHeight(saved->place, z, kNearestPlace, options.submaps.gate_probability,
+                      view.anchor);
   saved->found_at = view.travelled;
   corrected = true;
 }

@@ -21,7 +21,8 @@ struct Localised {
   double found_m = -1.0;  // way to the first of them
   double worst = 0.0;     // of them, m
   double worst_yaw = 0.0;
-  double nees = 0.0;  // mean, place in the plane
+  double height_sigma = 0.0;  // m, the largest told
+  double nees = 0.0;          // mean, place in the plane
   ParkingMap map;
   Trajectory final_poses;
 };
@@ -59,6 +60,7 @@ Localised drive(const Plan& plan, const ParkingMap& saved, const SE2& T_map_plan
     const SE2 off = SE2::fromSE3(fused.T_odom_vehicle).inverse() * T_map_plan * poses[k];
     result.worst = std::max(result.worst, off.translation().norm());
     result.worst_yaw = std::max(result.worst_yaw, std::abs(off.angle()));
+    result.height_sigma = std::max(result.height_sigma, std::sqrt(fused.covariance(2, 2)));
     const Eigen::Matrix2d P = fused.covariance.topLeftCorner<2, 2>();
     result.nees += off.translation().dot(P.inverse() * off.translation());
   }
@@ -80,6 +82,7 @@ TEST(FusedRelocalisation, FindsItselfInASavedMapAndStaysThere) {
   EXPECT_LT(later.worst, 0.08);
   EXPECT_LT(later.worst_yaw, 0.01);
   EXPECT_LT(later.nees, 6.0);
+  EXPECT_LT(later.height_sigma, 0.3);
   // Its own map and all of its poses, those before it was found as well, are in that map's world.
   EXPECT_THAT(findFaults(later.map), ::testing::IsEmpty());
   ASSERT_GT(later.map.slots.size(), 10U);

@@ -306,7 +306,12 @@ Result<std::unique_ptr<MappingRun>> MappingRun::create(const Rig& rig,
     for (const RigCamera& camera : rig.cameras) {
       viewpoints.push_back(camera.T_vehicle_cam.translation());
     }
-    impl->mapper = std::make_unique<FusedMapper>(options.fusion, std::move(viewpoints));
+    FusedMapperOptions fusion = options.fusion;
+    // What key points tell of their growth is too large; what wheels do is not.
+    if (method == RunMethod::kSemantic) {
+      fusion.odometry.told_share = std::max(1.0, fusion.odometry.told_share);
+    }
+    impl->mapper = std::make_unique<FusedMapper>(fusion, std::move(viewpoints));
   }
   impl->semantics = std::make_unique<SemanticQueue>(
       std::move(front_end).value(), *impl->mapper, impl->observers,

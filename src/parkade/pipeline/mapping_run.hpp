@@ -119,12 +119,14 @@ struct RunSummary {
   int pictures_passed_over = 0;     ///< frame sets that a live run took no time to look at
 };
 
-/// The mapping run: source -> tracker -> estimator. The only owner of threads: tracking of frame
-/// set k runs beside the estimation of k - 1, and cameras are shared out to threads that are idle.
+/// The mapping run: source -> tracker -> estimator. The only owner of threads but for readers and
+/// writers of recordings: tracking of frame set k runs beside the estimation of k - 1, and cameras
+/// are shared out to threads that are idle.
 ///
 /// The tracker's prior always comes from the state after frame set k - 2 and the IMU readings
 /// since, whether k - 1 is done or not: the same input gives the same poses on any number of
-/// threads. At most two frame sets are held. A frame set is processed when the first IMU reading
+/// threads. At most two frame sets are held, and as many more as pictures wait for
+/// their features (semantics_delay). A frame set is processed when the first IMU reading
 /// after it has come, so that the readings can be interpolated at its instant.
 class MappingRun {
  public:

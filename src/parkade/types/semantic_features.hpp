@@ -104,7 +104,6 @@ struct MovingObservation {
   bool moving = false;
 };
 
-/// All semantic features of one frame set.
 /// A key point that surely lies above the floor, near the car.
 struct RaisedPoint {
   std::uint64_t id = 0;  ///< of its landmark
@@ -112,6 +111,7 @@ struct RaisedPoint {
   Eigen::Vector3d p_level = Eigen::Vector3d::Zero();
 };
 
+/// All semantic features of one frame set.
 struct SemanticFrame {
   BevLabels labels;
   /// CV_8UC1 of the labels' size, or empty: kSmear where a label is what a picture draws of
