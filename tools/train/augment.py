@@ -109,15 +109,16 @@ def repaint(rng, image, labels, floor, lines):
     return np.where(there, image * (1 - mask) + paint * mask, image)
 
 
-def augment(rng, image, labels, floor_channel=None, line_channel=None):
+def augment(rng, image, labels, floor_channel=None, line_channel=None, plain=0.3):
     """floor_channel: the label of bare floor, whose colour and texture may change alone;
-    line_channel: that of slot lines, whose paint may."""
+    line_channel: that of slot lines, whose paint may; plain: the share of pictures that stay nearly as
+    they were drawn."""
     image = image.astype(np.float32)
     shape = labels.shape
     black = image.sum(2, keepdims=True) < 1.0
-    if line_channel is not None and rng.random() < 0.45:
+    if line_channel is not None and rng.random() < 0.64 * (1.0 - plain):
         image = repaint(rng, image, labels, floor_channel, line_channel)
-    if rng.random() < 0.3:  # nearly as it was drawn
+    if rng.random() < plain:
         image = image * np.exp(rng.normal(0, 0.15)) + rng.normal(0, 2, shape + (1,))
         return np.where(black, 0, np.clip(image, 0, 255)).astype(np.uint8)
     if floor_channel is not None and rng.random() < 0.4:

@@ -9,7 +9,7 @@ import torch
 from PIL import Image
 from torch.nn import functional as F
 
-from classes import IGNORE, NETWORKS, label_table
+from classes import IGNORE, NETWORKS, PX_PER_LABEL, label_table
 
 
 class Samples:
@@ -114,6 +114,12 @@ def mirrored_cut(image, labels, centre, size, upside_down, left_right):
     if upside_down:
         out, classes = out[::-1], classes[::-1]
     return (out[:, ::-1], classes[:, ::-1]) if left_right else (out, classes)
+
+
+def as_labelled(labels, network):
+    """Labels of a picture's pixels -> those that the network gives."""
+    step = PX_PER_LABEL[network]
+    return labels[..., step // 2 :: step, step // 2 :: step]
 
 
 def sample_labels(labels, x, y):

@@ -20,7 +20,7 @@ import onnx
 import torch
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from classes import NETWORKS  # noqa: E402
+from classes import NETWORKS, PX_PER_LABEL  # noqa: E402
 from network import MEAN, SCALE, fold_batch_norm, make_network  # noqa: E402
 
 METRES_PER_PX = {"bev": 0.04}
@@ -68,7 +68,7 @@ def write_class_map(name, path):
         "input:",
         f"  width: {width}",
         f"  height: {height}",
-        "  any_size: true",
+        f"  any_size: {'true' if name in METRES_PER_PX else 'false'}",
         "  channels: rgb",
         f"  mean: {MEAN:g}",
         f"  scale: {SCALE:.9g}",
@@ -118,7 +118,8 @@ def main():
     print(f"{a.out}.onnx: {os.path.getsize(a.out + '.onnx') / 1e6:.2f} MB, step {state['step']}")
     if a.check != "none":
         width, height = NETWORKS[state["name"]]["size"]
-        compare(network, [(width, height), (width - 64, height - 32)], a.out + ".onnx", a.check)
+        step = 32 * PX_PER_LABEL[state["name"]]
+        compare(network, [(width, height), (width - 2 * step, height - step)], a.out + ".onnx", a.check)
 
 
 if __name__ == "__main__":

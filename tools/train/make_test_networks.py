@@ -7,6 +7,7 @@
 
 bright.onnx    3 classes by brightness, any size, one channel per class: what a user brings
 blocks.onnx    2 classes by brightness, four channels per class at half the size
+coarse.onnx    the same, of the means of 2 x 2 px: labels of camera views at half the size
 vector.onnx    no picture comes out
 """
 import os
@@ -48,6 +49,11 @@ def main():
     save(folder, "blocks",
          [helper.make_node("Conv", ["picture", "w"], ["logits"], kernel_shape=[2, 2],
                            strides=[2, 2])], {"w": kernel}, (16, 16), [1, 8, 8, 8])
+    # Likewise, of the means of 2 x 2 px.
+    coarse = 0.25 * kernel.repeat(2, 2).repeat(2, 3)
+    save(folder, "coarse",
+         [helper.make_node("Conv", ["picture", "w"], ["logits"], kernel_shape=[4, 4],
+                           strides=[4, 4])], {"w": coarse}, (16, 16), [1, 8, 4, 4])
     save(folder, "vector",
          [helper.make_node("GlobalAveragePool", ["picture"], ["pooled"]),
           helper.make_node("Flatten", ["pooled"], ["logits"])], {}, (16, 16),

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A plain U-Net whose parts OpenCV 4.6 runs fast: 3x3 convolutions, bilinear resizing, sums.
 
-The logits have half the picture's resolution and four values per class, one for each pixel of a
+The logits have half the labels' resolution and four values per class, one for each pixel of a
 2 x 2 block (order: class, row, column, as PixelShuffle has it). Lines three pixels wide keep their
 edges that way, at the price of a half-size network. The export leaves the shuffle to the program,
 since OpenCV's permutation of it takes longer than the whole rest.
@@ -12,24 +12,48 @@ from torch import nn
 from torch.nn import functional as F
 
 WIDTHS = {"bev": [16, 32, 64, 96, 128], "raw": [16, 24, 48, 64, 96]}
+# Channels, kernel and stride of the first convolution. That of camera views sees twice the pixels that are
+# labelled: letters, signs and people are a few pixels wide.
+STEMS = {"bev": (16, 3, 2), "raw": (32, 6, 4)}
+# Residual blocks behind each level. Where pictures are small they cost little and see far: what is worn or
+# in glare is told by what stands around.
+DEPTHS = {"bev": [0, 0, 0, 2, 1], "raw": [0, 0, 1, 2, 1]}
 
 
 class ConvBlock(nn.Sequential):
-    def __init__(self, channels_in, channels_out, stride=1):
+    def __init__(self, channels_in, channels_out, stride=1, kernel=3):
+        padding = (kernel - 1) // 2
         super().__init__(
-            nn.Conv2d(channels_in, channels_out, 3, stride, 1, bias=False),
+            nn.Conv2d(channels_in, channels_out, kernel, stride, padding, bias=False),
             nn.BatchNorm2d(channels_out),
             nn.ReLU(inplace=True),
         )
 
 
-class UNet(nn.Module):
-    def __init__(self, num_classes, widths):
+class Residual(nn.Module):
+    """Begins as the identity, so that a trained network may be given more of them."""
+
+    def __init__(self, channels):
         super().__init__()
-        self.stem = ConvBlock(3, widths[0], 2)
-        self.down = nn.ModuleList([ConvBlock(widths[0], widths[0])])
+        self.block = ConvBlock(channels, channels)
+        self.last = nn.Conv2d(channels, channels, 3, 1, 1)
+        nn.init.zeros_(self.last.weight)
+        nn.init.zeros_(self.last.bias)
+
+    def forward(self, x):
+        return F.relu(x + self.last(self.block(x)))
+
+
+class UNet(nn.Module):
+    def __init__(self, num_classes, stem, widths, depths):
+        super().__init__()
+        channels, kernel, stride = stem
+        self.stem = ConvBlock(3, channels, stride, kernel)
+        self.down = nn.ModuleList([ConvBlock(channels, widths[0])])
         for before, after in zip(widths[:-1], widths[1:]):
             self.down.append(nn.Sequential(ConvBlock(before, after, 2), ConvBlock(after, after)))
+        self.deep = nn.ModuleList([nn.Sequential(*(Residual(width) for _ in range(depth)))
+                                   for width, depth in zip(widths, depths)])
         pairs = list(zip(widths[:-1], widths[1:]))[::-1]
         self.narrow = nn.ModuleList([nn.Conv2d(low, high, 1) for high, low in pairs])
         self.up = nn.ModuleList([ConvBlock(high, high) for high, _ in pairs])
@@ -38,11 +62,11 @@ class UNet(nn.Module):
         self.head = nn.Conv2d(2 * widths[0], 4 * num_classes, 1)
 
     def forward(self, x):
-        """Logits of half size, 4 x classes channels."""
+        """Logits of half the size of the labels, 4 x classes channels."""
         x = self.stem(x)
         levels = []
-        for block in self.down:
-            x = block(x)
+        for block, deep in zip(self.down, self.deep):
+            x = deep(block(x))
             levels.append(x)
         for narrow, up, skip in zip(self.narrow, self.up, levels[-2::-1]):
             x = F.interpolate(narrow(x), scale_factor=2.0, mode="bilinear", align_corners=False)
@@ -51,15 +75,18 @@ class UNet(nn.Module):
 
 
 def make_network(name, num_classes):
-    return UNet(num_classes, WIDTHS[name])
+    return UNet(num_classes, STEMS[name], WIDTHS[name], DEPTHS[name])
 
 
 def grown(before, now):
-    """The state dict `now` of a fresh network with the weights of a narrower or equal one in it. What
-    the old channels compute stays as it was: new ones feed nothing into them until training says so."""
+    """The state dict `now` of a fresh network with the weights of a narrower, shallower or equal one in it.
+    What the old channels compute stays as it was: new ones feed nothing into them until training says so.
+    A kernel of twice the size is the old one for a picture of twice the pixels."""
     state = {}
     for key, fresh in now.items():
         old = before.get(key)
+        if old is not None and old.dim() == 4 and fresh.shape[2] == 2 * old.shape[2] > 2:
+            old = 0.25 * old.repeat_interleave(2, 2).repeat_interleave(2, 3)
         if old is None or any(a > b for a, b in zip(old.shape, fresh.shape)):
             state[key] = fresh
             continue

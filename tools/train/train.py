@@ -24,8 +24,8 @@ import torch  # noqa: E402
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from augment import augment  # noqa: E402
 from classes import IGNORE, NETWORKS  # noqa: E402
-from dataset import Samples, cut  # noqa: E402
-from network import full_size, grown, make_network, to_input  # noqa: E402
+from dataset import Samples, as_labelled, cut  # noqa: E402
+from network import full_size, make_network, to_input  # noqa: E402
 from scores import Confusion, table  # noqa: E402
 from warm_start import load, settle  # noqa: E402
 
@@ -34,7 +34,7 @@ def is_validation(garage):
     return garage % 10 == 3
 
 
-def make_batch(samples, rng, batch, size, network):
+def make_batch(samples, rng, batch, size, network, plain):
     images, labels = [], []
     classes = NETWORKS[network]["classes"]
     floor, lines = (classes.index(name) if network == "bev" else None
@@ -44,13 +44,14 @@ def make_batch(samples, rng, batch, size, network):
         if network == "raw":
             straight = None
             height, width = samples.labels[index].shape
-            centre = (0.5 * width + rng.uniform(-40, 40), 0.5 * height + rng.uniform(-20, 20))
+            centre = ((0.5 + rng.uniform(-0.12, 0.12)) * width,
+                      (0.5 + rng.uniform(-0.1, 0.1)) * height)
         else:
             straight = rng.random() < 0.6
         image, label = cut(samples.images[index], samples.labels[index], np.asarray(centre), size,
                            rng, straight)
-        images.append(augment(rng, image, label, floor, lines))
-        labels.append(label)
+        images.append(augment(rng, image, label, floor, lines, plain))
+        labels.append(as_labelled(label, network))
     return np.stack(images), np.stack(labels)
 
 
@@ -116,7 +117,7 @@ def class_weights(pixels):
     return torch.tensor(weight / (weight * share).sum(), dtype=torch.float32)
 
 
-def keep_making(queue, data, network, seed, batch, size):
+def keep_making(queue, data, network, seed, batch, size, plain):
     """In a process of its own: batches without end, and how often the classes occur."""
     torch.set_num_threads(1)
     samples = Samples(data, network, lambda garage: not is_validation(garage))
@@ -126,7 +127,7 @@ def keep_making(queue, data, network, seed, batch, size):
         if time.time() - refreshed > 120:
             samples.refresh()
             refreshed = time.time()
-        queue.put((*make_batch(samples, rng, batch, size, network), samples.pixels,
+        queue.put((*make_batch(samples, rng, batch, size, network, plain), samples.pixels,
                    len(samples.images)))
 
 
@@ -137,7 +138,7 @@ def validate(network, samples, limit):
     with torch.no_grad():
         for i in range(0, len(samples.images), step):
             found = full_size(network(to_input(samples.images[i][None]))).argmax(1)[0]
-            confusion.add(samples.labels[i], found.numpy())
+            confusion.add(as_labelled(samples.labels[i], samples.network), found.numpy())
     network.train()
     return confusion.iou()
 
@@ -173,6 +174,8 @@ def main():
     parser.add_argument("--batch", type=int, default=6)
     parser.add_argument("--crop", type=int, default=256, help="side of a crop of bev, px [256]")
     parser.add_argument("--rate", type=float, default=2e-3, help="highest learning rate [0.002]")
+    parser.add_argument("--plain", type=float, default=0.3,
+                        help="share of pictures that stay nearly as they were drawn [0.3]")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--bfloat16", action="store_true",
                         help="half precision: twice as fast on processors that have it (avx512_bf16)")
@@ -198,11 +201,11 @@ def main():
         optimiser.load_state_dict(state["optimiser"])
         average.state, step, spent = state["average"], state["step"], state["spent"]
     elif a.warm_start:
-        network.load_state_dict(grown(load(a.warm_start, network), network.state_dict()))
+        network.load_state_dict(load(a.warm_start, network))
         if a.warm_start.endswith(".onnx"):
             rng = np.random.default_rng(a.seed)
             samples = Samples(a.data, a.network, lambda garage: not is_validation(garage))
-            settle(network, [to_input(make_batch(samples, rng, a.batch, size, a.network)[0])
+            settle(network, [to_input(make_batch(samples, rng, a.batch, size, a.network, a.plain)[0])
                              for _ in range(16)])
         average = Average(network, 0.998)
     log = open(os.path.join(a.out, "log.txt"), "a", buffering=1)
@@ -216,7 +219,8 @@ def main():
     queue = multiprocessing.Queue(4)
     multiprocessing.Process(
         target=keep_making, daemon=True,
-        args=(queue, a.data, a.network, a.seed * 1000003 + step, a.batch, size)).start()
+        args=(queue, a.data, a.network, a.seed * 1000003 + step, a.batch, size,
+              a.plain)).start()
     last, losses = time.time(), []
     saved = validated = spent
     while step < a.steps:

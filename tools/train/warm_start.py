@@ -4,6 +4,8 @@
 import torch
 from torch import nn
 
+from network import grown
+
 
 def blocks_of(network):
     """(name, convolution, batch norm) of each pair in the network."""
@@ -13,20 +15,12 @@ def blocks_of(network):
             yield name, parts[0], parts[1]
 
 
-def grown(value, wanted):
-    """A tensor with the rows that it lacks taken from the one that is wanted."""
-    if value.shape[1:] != wanted.shape[1:] or value.dim() == 0 or len(value) >= len(wanted):
-        return value
-    return torch.cat([value, wanted[len(value):]])
-
-
 def load(path, network):
     """The state dict of path, a state file or an ONNX file that export.py or export_text.py wrote.
     Of the latter `settle` must find the batch norms' means and spreads before training. Where the
-    network has more channels in the end (letters were added), those begin anew."""
+    network is larger (letters or blocks were added), what is new begins anew."""
     if not path.endswith(".onnx"):
-        return {key: grown(value, network.state_dict()[key])
-                for key, value in torch.load(path)["average"].items()}
+        return grown(torch.load(path)["average"], network.state_dict())
     import onnx
     from onnx import numpy_helper
 
@@ -38,21 +32,20 @@ def load(path, network):
 def with_idle_norms(path, stored, network):
     """The state dict of a network whose batch norms were folded into the convolutions, as for export:
     what is left of them does nothing. stored: its weights by name; path: where they come from."""
-    stored = dict(stored)
-    state = {key: value.clone() for key, value in network.state_dict().items()}
-    for name, _, norm in blocks_of(network):
-        state[f"{name}.1.bias"] = stored.pop(f"{name}.0.bias")
-        state[f"{name}.1.weight"] = torch.ones_like(norm.weight)
-        state[f"{name}.1.running_mean"] = torch.zeros_like(norm.running_mean)
-        state[f"{name}.1.running_var"] = torch.full_like(norm.running_var, 1.0 - norm.eps)
-    stored = {key: grown(value, state[key]) if key in state else value
-              for key, value in stored.items()}
-    unknown = [key for key, value in stored.items()
-               if key not in state or state[key].shape != value.shape]
+    fresh = network.state_dict()
+    unknown = [key for key in stored if key not in fresh and not key.endswith(".0.bias")]
     if unknown:
         raise SystemExit(f"{path}: made by another network than this one ({', '.join(unknown)})")
-    state.update(stored)
-    return state
+    before = {key: value for key, value in stored.items() if key in fresh}
+    for name, _, norm in blocks_of(network):
+        bias = stored.get(f"{name}.0.bias")
+        if bias is None:  # a block that was added
+            continue
+        before[f"{name}.1.bias"] = bias
+        before[f"{name}.1.weight"] = torch.ones_like(bias)
+        before[f"{name}.1.running_mean"] = torch.zeros_like(bias)
+        before[f"{name}.1.running_var"] = torch.full_like(bias, 1.0 - norm.eps)
+    return grown(before, fresh)
 
 
 def settle(network, batches):

@@ -47,6 +47,8 @@ struct SegmentationNetwork::Impl {
             static_cast<int>(std::lround(geometry.height_px * factor))};
   }
   [[nodiscard]] Status checkOutput(const cv::Size& size) const;
+  // Whether each channel of a class holds one pixel of every 2 x 2 block.
+  [[nodiscard]] bool inBlocks(const cv::Size& size) const;
   Status run(const cv::Mat& image, cv::Mat& labels, cv::Mat& confidence, cv::Mat& slot_line);
 };
 
@@ -79,15 +81,22 @@ Status SegmentationNetwork::Impl::checkOutput(const cv::Size& size) const {
         "{}: the network's output is {}; expected 1 x channels x height x width numbers",
         map.network, shape)};
   }
-  const bool blocks = logits.size[1] == 4 * classes && 2 * logits.size[2] == size.height &&
-                      2 * logits.size[3] == size.width;
-  if (!blocks && logits.size[1] != classes) {
+  if (!inBlocks(size) && logits.size[1] != classes) {
     return Error{fmt::format(
         "{}: {} classes, but the network {} gives {} for a picture of {} x {} px; expected {} "
         "channels (or {} at half the size, four per class)",
         map.path, classes, map.network, shape, size.width, size.height, classes, 4 * classes)};
   }
   return {};
+}
+
+bool SegmentationNetwork::Impl::inBlocks(const cv::Size& size) const {
+  if (logits.size[1] != 4 * static_cast<int>(map.classes.size())) return false;
+  const cv::Size labels(2 * logits.size[3], 2 * logits.size[2]);
+  if (labels == size) return true;
+  // Labels of camera views may be coarser than what the network sees, by a whole number.
+  const int step = std::max(1, size.width / std::max(1, labels.width));
+  return map.metres_per_px <= 0.0 && size == cv::Size(step * labels.width, step * labels.height);
 }
 
 Status SegmentationNetwork::Impl::run(const cv::Mat& image, cv::Mat& labels, cv::Mat& confidence,
@@ -98,8 +107,9 @@ Status SegmentationNetwork::Impl::run(const cv::Mat& image, cv::Mat& labels, cv:
   if (image.channels() == 1) cv::cvtColor(image, bgr, cv::COLOR_GRAY2BGR);
   const Status status = forward(bgr);
   if (!status) return status;
-  decodeLogits(logits, map.classes, bgr.size(), labels, confidence, slot_line,
-               map.unknown_is_unseen);
+  const cv::Size size =
+      inBlocks(bgr.size()) ? cv::Size(2 * logits.size[3], 2 * logits.size[2]) : bgr.size();
+  decodeLogits(logits, map.classes, size, labels, confidence, slot_line, map.unknown_is_unseen);
   return {};
 }
 

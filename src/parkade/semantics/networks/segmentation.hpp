@@ -17,7 +17,7 @@ namespace parkade {
 inline constexpr const char* kBevNetwork = "bev_segmentation";
 inline constexpr const char* kViewNetwork = "view_segmentation";
 
-/// The class of every pixel of a camera's picture, at the network's own size.
+/// The class of every pixel of a camera's picture, at the size that the network labels.
 struct ViewLabels {
   cv::Mat labels;      ///< CV_8UC1: SemanticClass
   cv::Mat confidence;  ///< CV_8UC1: probability of that class, 255 = 1

@@ -137,6 +137,24 @@ TEST_F(ClassMapFile, FourChannelsPerClassAreTheBlocksPixels) {
   EXPECT_THAT(bev.error().message, HasSubstr("metres_per_px"));
 }
 
+TEST_F(ClassMapFile, LabelsOfViewsMayBeCoarserThanWhatTheNetworkSees) {
+  const std::string path = write("network: " + kNetworks +
+                                 "coarse.onnx\n"
+                                 "input: {width: 32, height: 16, any_size: true, mean: 127.5, "
+                                 "scale: 0.00784313725}\n"
+                                 "classes: [floor, vehicle]\n");
+  Result<SegmentationNetwork> network = SegmentationNetwork::load(path);
+  ASSERT_TRUE(network) << network.error().message;
+  cv::Mat image(16, 32, CV_8UC1, cv::Scalar(30));
+  image(cv::Rect(6, 2, 4, 8)) = 200;
+  const Result<ViewLabels> labels = network->segmentView(image);
+  ASSERT_TRUE(labels) << labels.error().message;
+  cv::Mat expected(8, 16, CV_8UC1, cv::Scalar(static_cast<int>(SemanticClass::kFloor)));
+  expected(cv::Rect(3, 1, 2, 4)) = static_cast<int>(SemanticClass::kVehicle);
+  ASSERT_EQ(labels->labels.size(), expected.size());
+  EXPECT_EQ(cv::countNonZero(labels->labels != expected), 0);
+}
+
 TEST_F(ClassMapFile, BadModelsEndWithAClearMessage) {
   EXPECT_THAT(messageOf((folder_ / "none.yaml").string()), HasSubstr("none.yaml"));
   EXPECT_THAT(messageOf(write("network: gone.onnx\ninput: {width: 16, height: 16}\n"
