@@ -29,10 +29,10 @@ RAW_MERGED = {}
 
 NETWORKS = {
     "bev": {"classes": BEV_CLASSES, "merged": BEV_MERGED, "size": (384, 384)},
-    "raw": {"classes": RAW_CLASSES, "merged": RAW_MERGED, "size": (640, 384)},
+    "raw": {"classes": RAW_CLASSES, "merged": RAW_MERGED, "size": (320, 192)},
 }
 # Pixels of a picture for each one that is labelled, either way.
-PX_PER_LABEL = {"bev": 1, "raw": 2}
+PX_PER_LABEL = {"bev": 1, "raw": 1}
 
 
 def label_table(network):

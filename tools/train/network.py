@@ -12,12 +12,12 @@ from torch import nn
 from torch.nn import functional as F
 
 WIDTHS = {"bev": [16, 32, 64, 96, 128], "raw": [16, 24, 48, 64, 96]}
-# Channels, kernel and stride of the first convolution. That of camera views sees twice the pixels that are
-# labelled: letters, signs and people are a few pixels wide.
-STEMS = {"bev": (16, 3, 2), "raw": (32, 6, 4)}
+# Channels, kernel and stride of the first convolution. One of 6 and 4 sees twice the pixels that are labelled
+# (PX_PER_LABEL and size in classes.py), and begins as one of 3 and 2 for their means.
+STEMS = {"bev": (16, 3, 2), "raw": (16, 3, 2)}
 # Residual blocks behind each level. Where pictures are small they cost little and see far: what is worn or
 # in glare is told by what stands around.
-DEPTHS = {"bev": [0, 0, 0, 2, 1], "raw": [0, 0, 1, 2, 1]}
+DEPTHS = {"bev": [0, 0, 0, 2, 1], "raw": [0, 0, 0, 0, 0]}
 
 
 class ConvBlock(nn.Sequential):
