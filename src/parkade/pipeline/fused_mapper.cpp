@@ -159,15 +159,20 @@ void FusedMapper::Impl::enterMaps(const SemanticFrame& frame,
     global.update(labels, t_ns, open().anchor, between(open().anchor, view));
   }
   wall_points.add(frame.raised, open().anchor, between(open().anchor, view));
-  // What a car at a standstill sees again and again says nothing new for or against what it knows.
+  // What a car at a standstill sees again and again soon says nothing new for or against what it
+  // knows.
   constexpr double kStandstill = 0.1;  // m
-  const bool moved_on = view.travelled - last_judged >= kStandstill;
-  if (moved_on) last_judged = view.travelled;
+  constexpr int kLooks = 5;
+  if (view.travelled - last_judged >= kStandstill) {
+    last_judged = view.travelled;
+    looks_here = 0;
+  }
+  const bool is_new = looks_here++ < kLooks;
   static const std::vector<LevelView> kNoViews;
-  slots.update(frame.slots, t_ns, pose, open().anchor, moved_on);
+  slots.update(frame.slots, t_ns, pose, open().anchor, is_new);
   objects.update(frame.objects, pose, filter.anchor(view.anchor).z, open().anchor,
-                 moved_on && !frame.labels.labels.empty() ? &frame.labels : nullptr,
-                 moved_on ? level_views : kNoViews);
+                 is_new && !frame.labels.labels.empty() ? &frame.labels : nullptr,
+                 is_new ? level_views : kNoViews);
 }
 
 std::vector<Eigen::Vector3d> FusedMapper::Impl::wallPlaces() const {

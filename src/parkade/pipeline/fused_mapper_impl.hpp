@@ -129,7 +129,8 @@ class FusedMapper::Impl {
   std::vector<PoseGraphEdge> edges;
   double last_entered = -1e9;
   double last_registered = -1e9;
-  double last_judged = -1e9;
+  double last_judged = -1e9;  // way travelled when looks from there began to count
+  int looks_here = 0;
   bool corrected = false;
   LocalMap local;
   GlobalMap global;
