@@ -33,7 +33,8 @@ def with_idle_norms(path, stored, network):
     """The state dict of a network whose batch norms were folded into the convolutions, as for export:
     what is left of them does nothing. stored: its weights by name; path: where they come from."""
     fresh = network.state_dict()
-    unknown = [key for key in stored if key not in fresh and not key.endswith(".0.bias")]
+    unknown = [key for key, value in stored.items() if not key.endswith(".0.bias") and
+               (key not in fresh or any(a > b for a, b in zip(value.shape, fresh[key].shape)))]
     if unknown:
         raise SystemExit(f"{path}: made by another network than this one ({', '.join(unknown)})")
     before = {key: value for key, value in stored.items() if key in fresh}

@@ -209,12 +209,19 @@ TEST(SlotRegistry, DuplicatesFromAWrongPoseMergeWhenAnchorsAreCorrected) {
   }
 }
 
+// A slot beside the car, from x = 2 m on.
+SlotObservation slotTo(double x) {
+  SlotObservation o;
+  o.corners = {Eigen::Vector2d(2, 2), Eigen::Vector2d(x, 2), Eigen::Vector2d(x, 7),
+               Eigen::Vector2d(2, 7)};
+  o.entrance_covariance = 1e-3 * Eigen::Matrix4d::Identity();
+  o.confidence = 0.9;
+  return o;
+}
+
 TEST(SlotRegistry, FalseAlarmsAreNotTold) {
   SlotRegistry registry({});
-  SlotObservation ghost;
-  ghost.corners = {Eigen::Vector2d(2, 2), Eigen::Vector2d(4.5, 2), Eigen::Vector2d(4.5, 7),
-                   Eigen::Vector2d(2, 7)};
-  ghost.entrance_covariance = 1e-3 * Eigen::Matrix4d::Identity();
+  SlotObservation ghost = slotTo(4.5);
   ghost.confidence = 0.5;
   for (int k = 0; k < 60; ++k) {
     std::vector<SlotObservation> seen;
@@ -226,11 +233,7 @@ TEST(SlotRegistry, FalseAlarmsAreNotTold) {
 }
 
 TEST(SlotRegistry, ACarAtAStandstillMissesNothingTwice) {
-  SlotObservation seen;
-  seen.corners = {Eigen::Vector2d(2, 2), Eigen::Vector2d(4.5, 2), Eigen::Vector2d(4.5, 7),
-                  Eigen::Vector2d(2, 7)};
-  seen.entrance_covariance = 1e-3 * Eigen::Matrix4d::Identity();
-  seen.confidence = 0.9;
+  const SlotObservation seen = slotTo(4.5);
   for (const bool new_views : {false, true}) {
     SlotRegistry registry({});
     for (int k = 0; k < 5; ++k) registry.update({seen}, k * kTick, SE2(), 0);
@@ -240,14 +243,6 @@ TEST(SlotRegistry, ACarAtAStandstillMissesNothingTwice) {
 }
 
 TEST(SlotRegistry, OfTwoReadingsOfAPlaceTheOneSeenMoreOftenIsTold) {
-  const auto slotTo = [](double x) {
-    SlotObservation o;
-    o.corners = {Eigen::Vector2d(2, 2), Eigen::Vector2d(x, 2), Eigen::Vector2d(x, 7),
-                 Eigen::Vector2d(2, 7)};
-    o.entrance_covariance = 1e-3 * Eigen::Matrix4d::Identity();
-    o.confidence = 0.9;
-    return o;
-  };
   SlotRegistry registry({});
   for (int k = 0; k < 40; ++k) {
     // At first the line at its side is hidden, and a gap is taken into it.
