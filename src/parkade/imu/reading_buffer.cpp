@@ -3,14 +3,29 @@
 #include "parkade/imu/reading_buffer.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "parkade/core/check.hpp"
+#include "parkade/core/median.hpp"
 
 namespace parkade {
+namespace {
+
+constexpr double kMaxForce = 160.0;                    // m/s^2
+constexpr double kMaxRate = 35.0;                      // rad/s
+constexpr double kSpikeForce = 20.0;                   // m/s^2, off the median around
+constexpr double kSpikeRate = 2.0;                     // rad/s
+constexpr TimeNs kSpikeSurroundings = 100 * kNsPerMs;  // on either side
+constexpr TimeNs kLongestSpike = 50 * kNsPerMs;
+constexpr std::size_t kMinSurroundings = 5;
+
+}  // namespace
 
 bool ReadingBuffer::add(const ImuReading& reading) {
   if (!readings_.empty() && reading.t_ns <= readings_.back().t_ns) return false;
-  if (!reading.gyro.allFinite() || !reading.accel.allFinite()) return false;
+  // Not so for what is not finite, either.
+  const bool possible = reading.gyro.norm() <= kMaxRate && reading.accel.norm() <= kMaxForce;
+  if (!possible) return false;
   readings_.push_back(reading);
   return true;
 }
@@ -68,9 +83,61 @@ Preintegration ReadingBuffer::sumBetween(TimeNs begin_ns, TimeNs end_ns, const I
   const std::vector<ImuReading> readings = between(begin_ns, end_ns);
   for (std::size_t i = 0; i + 1 < readings.size(); ++i) {
     const TimeNs middle = readings[i].t_ns + (readings[i + 1].t_ns - readings[i].t_ns) / 2;
-    sum.integrate(readings[i], readings[i + 1], spacingAt(middle) > gap_ns ? 0 : gap_ns);
+    // What is held beyond the last reading is the less worth the longer it is held.
+    const TimeNs judged = readings[i + 1].t_ns > lastTime() ? readings[i + 1].t_ns : middle;
+    sum.integrate(readings[i], readings[i + 1], spacingAt(judged) > gap_ns ? 0 : gap_ns);
   }
   return sum;
+}
+
+std::vector<char> ReadingBuffer::unusual(std::size_t from, std::size_t to) const {
+  Eigen::Vector3d usual_gyro = Eigen::Vector3d::Zero();
+  Eigen::Vector3d usual_accel = Eigen::Vector3d::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> gyro;
+    std::vector<double> accel;
+    for (std::size_t i = from; i < to; ++i) {
+      gyro.push_back(readings_[i].gyro(axis));
+      accel.push_back(readings_[i].accel(axis));
+    }
+    usual_gyro(axis) = median(std::move(gyro));
+    usual_accel(axis) = median(std::move(accel));
+  }
+  std::vector<char> result;
+  for (std::size_t i = from; i < to; ++i) {
+    result.push_back((readings_[i].gyro - usual_gyro).norm() > kSpikeRate ||
+                     (readings_[i].accel - usual_accel).norm() > kSpikeForce);
+  }
+  return result;
+}
+
+int ReadingBuffer::dropSpikes(TimeNs begin_ns, TimeNs end_ns) {
+  const std::size_t after = indexAfter(begin_ns);
+  const std::size_t first = after > 0 ? after - 1 : 0;
+  const std::size_t last = std::min(indexAfter(end_ns) + 1, readings_.size());
+  const std::size_t from = std::min(indexAfter(begin_ns - kSpikeSurroundings), first);
+  const std::size_t to = std::max(indexAfter(end_ns + kSpikeSurroundings), last);
+  if (to - from < kMinSurroundings) return 0;
+  const std::vector<char> far = unusual(from, to);
+  int dropped = 0;
+  // From the back, so that what lies before stays where it is.
+  for (std::size_t end = to; end > from;) {
+    std::size_t begin = end - 1;
+    if (far[begin - from] == 0) {
+      end = begin;
+      continue;
+    }
+    while (begin > from && far[begin - 1 - from] != 0) --begin;
+    // What goes on at either end may be a step that stays.
+    if (begin > from && end < to && begin < last && end > first &&
+        readings_[end].t_ns - readings_[begin - 1].t_ns <= kLongestSpike) {
+      readings_.erase(readings_.begin() + static_cast<std::ptrdiff_t>(begin),
+                      readings_.begin() + static_cast<std::ptrdiff_t>(end));
+      dropped += static_cast<int>(end - begin);
+    }
+    end = begin;
+  }
+  return dropped;
 }
 
 void ReadingBuffer::dropBefore(TimeNs t_ns) {

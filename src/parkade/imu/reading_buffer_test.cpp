@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <limits>
 
 namespace parkade {
@@ -55,6 +56,48 @@ TEST(ReadingBuffer, GapStaysAGapWhenItIsCut) {
   EXPECT_NEAR(gapOf(100, 150), 0.05, 1e-9);
   EXPECT_NEAR(gapOf(0, 110), 0.1, 1e-9);
   EXPECT_EQ(buffer.spacingAt(200 * kNsPerMs), 500 * kNsPerMs);
+}
+
+TEST(ReadingBuffer, WhatIsHeldForLongIsAGap) {
+  ReadingBuffer buffer;
+  (void)buffer.add({0, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()});
+  (void)buffer.add({10 * kNsPerMs, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()});
+  const auto gapOf = [&](int begin_ms, int end_ms) {
+    return buffer
+        .sumBetween(begin_ms * kNsPerMs, end_ms * kNsPerMs, ImuNoise{}, ImuBias{}, 100 * kNsPerMs)
+        .gapDuration();
+  };
+  EXPECT_DOUBLE_EQ(gapOf(0, 100), 0.0);
+  EXPECT_NEAR(gapOf(0, 160), 0.15, 1e-9);
+  EXPECT_NEAR(gapOf(60, 160), 0.1, 1e-9);
+}
+
+TEST(ReadingBuffer, RefusesWhatNoVehicleDoes) {
+  ReadingBuffer buffer = ramp();
+  EXPECT_FALSE(buffer.add({50, Eigen::Vector3d::Zero(), {161.0, 0.0, 0.0}}));
+  EXPECT_FALSE(buffer.add({50, {0.0, -36.0, 0.0}, Eigen::Vector3d::Zero()}));
+  EXPECT_TRUE(buffer.add({50, {0.0, -34.0, 0.0}, {0.0, 0.0, 157.0}}));
+}
+
+TEST(ReadingBuffer, DropsSingleBrokenReadings) {
+  ReadingBuffer buffer;
+  const Eigen::Vector3d rest(0.0, 0.0, 9.81);
+  const auto fill = [&](const std::function<Eigen::Vector3d(int)>& accel) {
+    buffer = ReadingBuffer();
+    for (int i = 0; i <= 60; ++i) {
+      ASSERT_TRUE(buffer.add({i * 5 * kNsPerMs, Eigen::Vector3d::Zero(), accel(i)}));
+    }
+  };
+  fill([&](int i) { return i == 30 ? Eigen::Vector3d(150.0, 0.0, 9.81) : rest; });
+  EXPECT_EQ(buffer.dropSpikes(0, 100 * kNsPerMs), 0);
+  EXPECT_EQ(buffer.dropSpikes(102 * kNsPerMs, 202 * kNsPerMs), 1);
+  EXPECT_EQ(buffer.size(), 60U);
+  EXPECT_DOUBLE_EQ(buffer.at(150 * kNsPerMs).accel.x(), 0.0);
+  // What lasts is believed, and so is what a hard braking does.
+  fill([&](int i) { return i > 30 ? Eigen::Vector3d(50.0, 0.0, 9.81) : rest; });
+  EXPECT_EQ(buffer.dropSpikes(151 * kNsPerMs, 202 * kNsPerMs), 0);
+  fill([&](int i) { return i == 30 ? Eigen::Vector3d(-12.0, 0.0, 9.81) : rest; });
+  EXPECT_EQ(buffer.dropSpikes(102 * kNsPerMs, 202 * kNsPerMs), 0);
 }
 
 TEST(ReadingBuffer, RefusesStaleAndBrokenReadings) {

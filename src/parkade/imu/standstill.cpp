@@ -2,9 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/imu/standstill.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace parkade {
+namespace {
+
+constexpr double kStandardErrors = 4.0;
+
+double limitOfMean(double density, double random_walk, double span_s, double age_s) {
+  return kStandardErrors * std::hypot(density * std::sqrt(2.0 / std::max(span_s, 1e-3)),
+                                      random_walk * std::sqrt(std::max(age_s, 0.0)));
+}
+
+}  // namespace
 
 StillnessCheck checkStillness(std::span<const ImuReading> readings, const ImuNoise& noise,
                               double tolerance, double gyro_floor, double accel_floor) {
@@ -29,6 +40,18 @@ StillnessCheck checkStillness(std::span<const ImuReading> readings, const ImuNoi
       check.gyro_spread < gyro_floor + tolerance * noise.gyroscope_noise_density * root_rate &&
       check.accel_spread < accel_floor + tolerance * noise.accelerometer_noise_density * root_rate;
   return check;
+}
+
+bool meansAreOfRest(const StillnessCheck& check, const RestReadings& rest, const ImuNoise& noise,
+                    double span_s, double age_s) {
+  const double gyro_limit =
+      rest.gyro_doubt +
+      limitOfMean(noise.gyroscope_noise_density, noise.gyroscope_random_walk, span_s, age_s);
+  const double accel_limit =
+      rest.accel_doubt + limitOfMean(noise.accelerometer_noise_density,
+                                     noise.accelerometer_random_walk, span_s, age_s);
+  return (check.mean_gyro - rest.gyro).cwiseAbs().maxCoeff() < gyro_limit &&
+         (check.mean_accel - rest.accel).cwiseAbs().maxCoeff() < accel_limit;
 }
 
 }  // namespace parkade

@@ -24,4 +24,18 @@ struct StillnessCheck {
 StillnessCheck checkStillness(std::span<const ImuReading> readings, const ImuNoise& noise,
                               double tolerance, double gyro_floor, double accel_floor);
 
+/// What readings say while nothing moves, as a mean.
+struct RestReadings {
+  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();   ///< rad/s
+  Eigen::Vector3d accel = Eigen::Vector3d::Zero();  ///< m/s^2
+  double gyro_doubt = 0.0;                          ///< rad/s, by which they may be wrong
+  double accel_doubt = 0.0;                         ///< m/s^2
+};
+
+/// Whether the means of a stretch of `span_s` are those of rest, known from as long a stretch
+/// `age_s` before: no further off than four standard errors by both stretches' white noise and the
+/// biases' random walk, plus the doubts. A car that speeds up evenly is quiet, but not this.
+bool meansAreOfRest(const StillnessCheck& check, const RestReadings& rest, const ImuNoise& noise,
+                    double span_s, double age_s);
+
 }  // namespace parkade

@@ -49,6 +49,25 @@ TEST(Stillness, MotionIsNotQuiet) {
   }
 }
 
+TEST(Stillness, EvenAccelerationIsQuietButNotRest) {
+  const ImuNoise noise;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const StillnessCheck before = checkStillness(stretch(0.0, 0.0, seed), noise, 2.0, 0.003, 0.05);
+    const RestReadings rest{before.mean_gyro, before.mean_accel, 0.0, 0.0};
+    const StillnessCheck later =
+        checkStillness(stretch(0.0, 0.0, seed + 100), noise, 2.0, 0.003, 0.05);
+    EXPECT_TRUE(meansAreOfRest(later, rest, noise, 0.5, 10.0)) << seed;
+    std::vector<ImuReading> driving = stretch(0.0, 0.0, seed + 100);
+    for (ImuReading& reading : driving) reading.accel.x() += 0.1;
+    const StillnessCheck moving = checkStillness(driving, noise, 2.0, 0.003, 0.05);
+    EXPECT_TRUE(moving.quiet) << seed;
+    EXPECT_FALSE(meansAreOfRest(moving, rest, noise, 0.5, 10.0)) << seed;
+    RestReadings doubtful = rest;
+    doubtful.accel_doubt = 0.15;
+    EXPECT_TRUE(meansAreOfRest(moving, doubtful, noise, 0.5, 10.0)) << seed;
+  }
+}
+
 TEST(Stillness, TooFewReadingsSayNothing) {
   const auto readings = stretch(0.0, 0.0, 1);
   const std::span<const ImuReading> few(readings.data(), 3);

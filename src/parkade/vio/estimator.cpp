@@ -19,8 +19,6 @@ constexpr double kSaneBiasAccel = 5.0;     // m/s^2
 constexpr int kMinTrackedLandmarks = 10;   // fewer: degraded
 constexpr double kKeepReadings = 2.0;      // s
 constexpr double kHeldCalibration = 1e-6;  // m, rad, s
-constexpr double kSettledPosition = 0.01;  // m, a step that needs no second one
-constexpr double kSettledRotation = 1e-3;  // rad
 
 }  // namespace
 
@@ -68,8 +66,10 @@ VioEstimator::Impl::Impl(const Rig& rig, const VioOptions& options)
 
 void VioEstimator::Impl::addImu(const ImuSample& sample) {
   if (!readings_.add({sample.t_ns, sample.gyro, sample.accel})) {
-    logWarning("IMU reading at {} ns dropped: not newer than the last one, or not finite",
-               sample.t_ns);
+    logWarning(
+        "IMU reading at {} ns dropped: not newer than the last one, not finite, or beyond what a "
+        "vehicle does",
+        sample.t_ns);
   }
 }
 
@@ -98,67 +98,21 @@ PoseEstimate VioEstimator::Impl::addTracks(const TrackSet& tracks) {
       trimWindow();
     }
   }
-  if (!window_.frames.empty()) {
-    const TimeNs keep =
-        std::min(window_.frames.front().t_ns, tracks.t_ns - fromSeconds(kKeepReadings));
-    readings_.dropBefore(keep);
-  }
+  dropOldReadings(tracks.t_ns);
   return last_;
 }
 
-void VioEstimator::Impl::setImu(WindowFrame& frame, TimeNs begin_ns, const ImuBias& bias) const {
-  if (readings_.empty()) return;
-  const Preintegration sum = readings_.sumBetween(begin_ns, frame.t_ns, noise_, bias, gap_ns_);
-  frame.imu_tail_held = readings_.lastTime() < frame.t_ns;
-  frame.imu = sum;
-  frame.imu_sqrt_information = sqrtInformation(sum);
-}
-
-void VioEstimator::Impl::addFrame(const TrackSet& tracks) {
-  WindowFrame& previous = window_.frames.back();
-  if (previous.imu && previous.imu_tail_held && window_.frames.size() > 1) {
-    setImu(previous, window_.frames[window_.frames.size() - 2].t_ns, previous.imu->bias());
+void VioEstimator::Impl::dropOldReadings(TimeNs now_ns) {
+  TimeNs keep = now_ns - fromSeconds(kKeepReadings);
+  if (!window_.frames.empty()) {
+    keep = std::min(keep, window_.frames.front().t_ns);
+  } else {
+    // Before a start.
+    keep -= fromSeconds(options_.standstill.window_s);
+    if (!start_frames_.empty()) keep = std::min(keep, start_frames_.front().t_ns);
   }
-  WindowFrame frame;
-  frame.id = next_id_++;
-  frame.t_ns = tracks.t_ns;
-  setImu(frame, previous.t_ns, previous.bias);
-  frame.bias = previous.bias;
-  frame.state = frame.imu->propagate(previous.state, previous.bias, window_.gravity.vector);
-  frame.gyro = readings_.at(frame.t_ns).gyro;
-
-  // How far the prediction may be off relative to the frame before it.
-  Matrix15d spread = newest_covariance_;
-  const Eigen::Matrix3d R = previous.state.R_odom_imu.matrix();
-  Matrix15d to_local = Matrix15d::Identity();
-  to_local.block<3, 3>(0, 0) = R.transpose();
-  to_local.block<3, 3>(6, 6) = R.transpose();
-  spread.topRows<6>().setZero();
-  spread.leftCols<6>().setZero();
-  spread = to_local * spread * to_local.transpose();
-  const Matrix15d F = frame.imu->transition();
-  spread = F * spread * F.transpose() + frame.imu->covariance();
-  Eigen::Matrix<double, 6, 6> pose_spread = spread.topLeftCorner<6, 6>();
-  pose_spread.topRows<3>() = R * pose_spread.topRows<3>();
-  pose_spread.leftCols<3>() = pose_spread.leftCols<3>() * R.transpose();
-
-  const Observations observations =
-      FeatureManager::observationsOf(window_.cameras, tracks, frame.id);
-  detectStandstill(frame, observations);
-  addBodyVelocity(frame);
-  window_.frames.push_back(frame);
-  features_.add(window_, observations);
-  const GateResult gate = features_.gateNewest(window_, pose_spread);
-  rememberTracks(observations, tracks.t_ns);
-  features_.triangulateNew(window_);
-  SolveOptions solve = solveOptions(options_.window.max_iterations);
-  solve.settled_position = kSettledPosition;
-  solve.settled_rotation = kSettledRotation;
-  optimise(solve);
-  statistics.rejected_observations += gate.rejected;
-  statistics.rejected_cameras = gate.cameras;
-  statistics.standstill = still_;
-  updateHealth(tracks, gate);
+  readings_.dropBefore(keep);
+  statistics.imu_readings = static_cast<int>(readings_.size());
 }
 
 SolveOptions VioEstimator::Impl::solveOptions(int max_iterations) const {
@@ -188,6 +142,7 @@ void VioEstimator::Impl::optimise(const SolveOptions& options) {
   for (const WindowFrame& frame : window_.frames) keyframes += frame.keyframe ? 1 : 0;
   statistics.frames = static_cast<int>(window_.frames.size());
   statistics.keyframes = keyframes;
+  statistics.span_s = toSeconds(window_.frames.back().t_ns - window_.frames.front().t_ns);
   statistics.landmarks = static_cast<int>(selected.size());
   statistics.observations = summary.observations;
   statistics.iterations = summary.iterations;
@@ -262,6 +217,9 @@ void VioEstimator::Impl::updateHealth(const TrackSet& tracks, const GateResult& 
   } else if (gap > 0.0) {
     health_ = Health::kDegraded;
     reason_ = fmt::format("no IMU readings for {:.2f} s", gap);
+  } else if (gate.contradicted) {
+    health_ = Health::kDegraded;
+    reason_ = "most cameras contradict the IMU readings";
   } else if (!gate.cameras.empty()) {
     health_ = Health::kDegraded;
     reason_ = "moving objects fill the view of camera";

@@ -28,6 +28,9 @@ struct VioStatistics {
   int rejected_observations = 0;
   std::vector<int> rejected_cameras;  ///< that contradict the prediction as a whole
   bool standstill = false;
+  bool contradicted = false;  ///< by most cameras: the prediction
+  double span_s = 0.0;        ///< from the window's oldest frame to its newest
+  int imu_readings = 0;       ///< kept
 };
 
 /// Where a camera sits on the car and how its clock is off, as refined online.
@@ -51,8 +54,8 @@ class VioEstimator {
   VioEstimator(VioEstimator&&) noexcept;
   VioEstimator& operator=(VioEstimator&&) noexcept;
 
-  /// Readings in the order of time; one that is not newer than the last or not finite is dropped
-  /// with a warning.
+  /// Readings in the order of time; one that is not newer than the last, not finite, or beyond what
+  /// a vehicle does is dropped with a warning.
   void addImu(const ImuSample& sample);
   void addWheel(const WheelSample& sample);
 

@@ -42,6 +42,7 @@ class VioEstimator::Impl {
  private:
   // Start-up (estimator_start.cpp).
   PoseEstimate startUp(const TrackSet& tracks);
+  void trimStartFrames();
   bool startAtRest();
   bool startInMotion();
   struct StartTrial {
@@ -69,26 +70,51 @@ class VioEstimator::Impl {
   /// Moves states of a start about their own origin to where the last run of the window ended.
   void continueFromLast(std::vector<NavState>& states, StartPrior& prior) const;
 
-  // Each frame set (estimator.cpp).
+  // Each frame set (estimator_frame.cpp, estimator.cpp).
   void addFrame(const TrackSet& tracks);
+  void setImu(WindowFrame& frame, TimeNs begin_ns, const ImuBias& bias) const;
+  void sumHeldAgain();
+  /// Where the readings since the frame before take a frame. Returns the covariance of its position
+  /// (odom axes) and rotation relative to that frame.
+  Eigen::Matrix<double, 6, 6> predictFrame(WindowFrame& frame, const WindowFrame& previous) const;
+  GateResult gateNewest(const Eigen::Matrix<double, 6, 6>& spread);
+  void dropOldReadings(TimeNs now_ns);
   void addBodyVelocity(WindowFrame& frame) const;
   void optimise(const SolveOptions& options);
   void updateHealth(const TrackSet& tracks, const GateResult& gate);
 
   // Rest (estimator_rest.cpp).
   void detectStandstill(WindowFrame& frame, const Observations& observations);
-  /// Since the oldest of the recent tracks; nothing where too few features are known from there.
-  [[nodiscard]] std::optional<bool> imagesStill(const Observations& observations) const;
+  /// Since the oldest of the recent tracks of a same camera; nothing where too few features are
+  /// known from there.
+  [[nodiscard]] std::optional<bool> imagesStill(const Observations& observations,
+                                                TimeNs t_ns) const;
+  [[nodiscard]] bool readingsAreOfRest(const WindowFrame& frame, const StillnessCheck& check,
+                                       bool was_still) const;
+  [[nodiscard]] bool wheelsTurn(const WindowFrame& frame) const;
+  void rememberRest(const WindowFrame& frame, const StillnessCheck& check, bool seen);
   void rememberTracks(const Observations& observations, TimeNs t_ns);
 
   // The window's frames (estimator_window.cpp).
   void trimWindow();
   /// The last keyframe before a frame; null where there is none.
   [[nodiscard]] const WindowFrame* keyframeBefore(std::size_t index) const;
+  /// The last one in which a camera saw something, for each camera of a frame; cameras may take
+  /// turns.
+  [[nodiscard]] std::vector<const WindowFrame*> keyframesBefore(std::size_t index) const;
+  /// What a frame's features have in common with the frame after it and with keyframes.
+  struct Overlap {
+    int seen = 0;
+    int expected = 0;   ///< of them, in the frame after: its cameras should be there, too
+    int continued = 0;  ///< of these, found there
+    int shared = 0;     ///< with their cameras' keyframes
+    std::vector<double> parallax;  ///< rad, of those, without rotation
+  };
+  [[nodiscard]] Overlap overlapOf(std::size_t index,
+                                  const std::vector<const WindowFrame*>& keyframes) const;
   [[nodiscard]] bool wantsKeyframe(std::size_t index) const;
   void removeFrame(std::size_t index);
   void marginaliseOldestKeyframe();
-  void setImu(WindowFrame& frame, TimeNs begin_ns, const ImuBias& bias) const;
 
   [[nodiscard]] PoseEstimate estimate() const;
   [[nodiscard]] SolveOptions solveOptions(int max_iterations) const;
@@ -118,6 +144,13 @@ class VioEstimator::Impl {
     Observations observations;
   };
   std::deque<RecentTracks> recent_tracks_;
+  struct KnownRest {
+    TimeNs t_ns = 0;
+    bool seen = false;  ///< images vouched for it
+    SO3 R_odom_imu;
+    RestReadings readings;
+  };
+  std::optional<KnownRest> known_rest_;  ///< the last one, while the car can hardly have moved
 
   PoseEstimate last_;
   Matrix15d newest_covariance_ = Matrix15d::Zero();  ///< window's tangent

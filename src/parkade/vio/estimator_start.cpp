@@ -13,7 +13,8 @@ namespace {
 constexpr double kGaugePosition = 1e-4;  // m: the first pose is where it is by definition
 constexpr double kGaugeRotation = 1e-5;  // rad
 constexpr std::size_t kMinStartFrames = 5;
-constexpr double kMinRestSpan = 0.25;  // s of quiet readings
+constexpr double kFewFramesSpan = 2.5;  // s, at most, of which a start takes so few images
+constexpr double kMinRestSpan = 0.25;   // s of quiet readings
 constexpr int kStartIterations = 15;
 constexpr double kStartBend = 0.3;     // sigma, of Huber's loss
 constexpr double kMaxStartCost = 3.0;  // per observation, half squared sigmas
@@ -36,14 +37,10 @@ PoseEstimate VioEstimator::Impl::startUp(const TrackSet& tracks) {
     start_reason_ = "no IMU readings yet";
     rememberTracks(frame.observations, frame.t_ns);
   } else {
-    const bool images_still = imagesStill(frame.observations).value_or(false);
+    const bool images_still = imagesStill(frame.observations, frame.t_ns).value_or(false);
     rememberTracks(frame.observations, frame.t_ns);
     start_frames_.push_back(std::move(frame));
-    const TimeNs oldest = tracks.t_ns - fromSeconds(options_.start_up.max_span_s + 0.1);
-    while (start_frames_.front().t_ns < std::max(oldest, readings_.firstTime()) &&
-           start_frames_.size() > 1) {
-      start_frames_.erase(start_frames_.begin());
-    }
+    trimStartFrames();
     started = (images_still && startAtRest()) || startInMotion();
   }
   if (started) {
@@ -62,6 +59,21 @@ PoseEstimate VioEstimator::Impl::startUp(const TrackSet& tracks) {
   return result;
 }
 
+// Keeps as many images as a start in motion needs, and little more.
+void VioEstimator::Impl::trimStartFrames() {
+  const TimeNs now = start_frames_.back().t_ns;
+  const double span = std::max(options_.start_up.min_span_s, options_.start_up.max_span_s);
+  const TimeNs usual = now - fromSeconds(span + 0.1);
+  const TimeNs longest = std::min(usual, now - fromSeconds(kFewFramesSpan));
+  while (start_frames_.size() > 1) {
+    const TimeNs oldest = start_frames_[0].t_ns;
+    const bool spare = oldest < usual && start_frames_.size() > kMinStartFrames &&
+                       now - start_frames_[1].t_ns >= fromSeconds(span);
+    if (!spare && oldest >= std::max(longest, readings_.firstTime())) break;
+    start_frames_.erase(start_frames_.begin());
+  }
+}
+
 SolveOptions VioEstimator::Impl::startOptions() const {
   SolveOptions solve = solveOptions(kStartIterations);
   // A first guess may be far off: convex, unlike the loss that follows.
@@ -72,8 +84,8 @@ SolveOptions VioEstimator::Impl::startOptions() const {
 bool VioEstimator::Impl::startAtRest() {
   if (!options_.standstill.enable) return false;
   const TimeNs now = start_frames_.back().t_ns;
-  const TimeNs begin =
-      std::max(readings_.firstTime(), now - fromSeconds(options_.standstill.window_s));
+  const double longest = std::max(options_.standstill.window_s, kMinRestSpan);
+  const TimeNs begin = std::max(readings_.firstTime(), now - fromSeconds(longest));
   if (toSeconds(now - begin) < kMinRestSpan) {
     start_reason_ = "too few IMU readings to tell rest from motion";
     return false;
@@ -101,6 +113,8 @@ bool VioEstimator::Impl::startAtRest() {
   continueFromLast(states, prior);
   enterWindow(states, start_frames_.size() - 1, bias, prior);
   still_ = true;
+  known_rest_ = KnownRest{now, true, states.front().R_odom_imu,
+                          RestReadings{check.mean_gyro, check.mean_accel, 0.0, 0.0}};
   still_anchor_id_ = window_.frames.back().id;
   window_.frames.back().still_since = still_anchor_id_;
   window_.frames.back().keyframe = true;
@@ -251,6 +265,9 @@ void VioEstimator::Impl::enterWindow(const std::vector<NavState>& states, std::s
     frame.state = states[i];
     frame.bias = bias;
     frame.gyro = readings_.at(frame.t_ns).gyro;
+    frame.cameras = camerasOf(start.observations);
+    frame.steady_cameras = frame.cameras;
+    if (i > 0) frame.steady_cameras &= window_.frames.back().cameras;
     addBodyVelocity(frame);
     if (i > 0) setImu(frame, start_frames_[first + i - 1].t_ns, bias);
     // Every second frame of the start is a keyframe; the rest leave as recent frames do.
@@ -336,6 +353,7 @@ void VioEstimator::Impl::restart(const std::string& reason) {
   start_frames_.clear();
   initialised_ = false;
   still_ = false;
+  known_rest_.reset();
   still_anchor_id_ = -1;
   start_reason_ = "starting again: " + reason;
   last_.health = Health::kInitialising;

@@ -21,47 +21,81 @@ const WindowFrame* VioEstimator::Impl::keyframeBefore(std::size_t index) const {
   return index > 0 ? &window_.frames[index - 1] : nullptr;
 }
 
+std::vector<const WindowFrame*> VioEstimator::Impl::keyframesBefore(std::size_t index) const {
+  std::vector<const WindowFrame*> keyframes(window_.cameras.size(), nullptr);
+  for (std::size_t c = 0; c < keyframes.size(); ++c) {
+    const std::uint64_t camera = std::uint64_t{1} << (c & 63);
+    if ((window_.frames[index].cameras & camera) == 0) continue;
+    for (std::size_t k = index; k > 0 && keyframes[c] == nullptr; --k) {
+      const WindowFrame& before = window_.frames[k - 1];
+      if (before.keyframe && (before.cameras & camera) != 0) keyframes[c] = &before;
+    }
+  }
+  return keyframes;
+}
+
+VioEstimator::Impl::Overlap VioEstimator::Impl::overlapOf(
+    std::size_t index, const std::vector<const WindowFrame*>& keyframes) const {
+  const WindowFrame& frame = window_.frames[index];
+  const WindowFrame& next = window_.frames[index + 1];
+  // A camera that gives every frame set is missed where it gives none, one that takes turns is not.
+  const std::uint64_t expected =
+      next.cameras == 0 ? ~std::uint64_t{0} : next.cameras | frame.steady_cameras;
+  std::vector<SO3> turns(keyframes.size());
+  for (std::size_t c = 0; c < keyframes.size(); ++c) {
+    if (keyframes[c] == nullptr) continue;
+    turns[c] = keyframes[c]->state.R_odom_imu.inverse() * frame.state.R_odom_imu;
+  }
+  Overlap overlap;
+  for (const auto& [id, feature] : window_.features) {
+    const WindowObservation* here = nullptr;
+    const WindowObservation* there = nullptr;
+    bool continued = false;
+    for (const WindowObservation& o : feature.observations) {
+      if (o.frame_id == next.id) continued = true;
+      if (o.frame_id == frame.id && here == nullptr) here = &o;
+    }
+    if (here == nullptr) continue;
+    const auto camera = static_cast<std::size_t>(here->camera);
+    ++overlap.seen;
+    if (continued || ((expected >> (camera & 63)) & 1U) != 0) ++overlap.expected;
+    if (continued) ++overlap.continued;
+    if (keyframes[camera] == nullptr) continue;
+    for (const WindowObservation& o : feature.observations) {
+      if (o.frame_id == keyframes[camera]->id && o.camera == here->camera) there = &o;
+    }
+    if (there == nullptr) continue;
+    ++overlap.shared;
+    const SO3& R_imu_cam = window_.cameras[camera].T_imu_cam.rotation();
+    const Eigen::Vector3d ray = turns[camera] * (R_imu_cam * here->ray);
+    overlap.parallax.push_back(std::acos(std::clamp(ray.dot(R_imu_cam * there->ray), -1.0, 1.0)));
+  }
+  return overlap;
+}
+
 // Whether the frame adds to what the keyframes before it see; decided when it leaves the recent
 // frames, with the frame after it known.
 bool VioEstimator::Impl::wantsKeyframe(std::size_t index) const {
   const WindowFrame& frame = window_.frames[index];
   const WindowFrame* last = keyframeBefore(index);
   if (last == nullptr) return true;
-  const WindowFrame& keyframe = *last;
   if (frame.still_since >= 0 && frame.still_since != frame.id) return false;
 
-  const SO3 R_keyframe_frame = keyframe.state.R_odom_imu.inverse() * frame.state.R_odom_imu;
-  int seen = 0;
-  int shared = 0;
-  int continued = 0;
-  std::vector<double> parallax;
-  const int next_id = window_.frames[index + 1].id;
-  for (const auto& [id, feature] : window_.features) {
-    const WindowObservation* here = nullptr;
-    const WindowObservation* there = nullptr;
-    bool next = false;
-    for (const WindowObservation& o : feature.observations) {
-      if (o.frame_id == next_id) next = true;
-      if (o.frame_id == frame.id && here == nullptr) here = &o;
-    }
-    if (here == nullptr) continue;
-    ++seen;
-    if (next) ++continued;
-    for (const WindowObservation& o : feature.observations) {
-      if (o.frame_id == keyframe.id && o.camera == here->camera) there = &o;
-    }
-    if (there == nullptr) continue;
-    ++shared;
-    const SO3& R_imu_cam =
-        window_.cameras[static_cast<std::size_t>(here->camera)].T_imu_cam.rotation();
-    const Eigen::Vector3d ray = R_keyframe_frame * (R_imu_cam * here->ray);
-    parallax.push_back(std::acos(std::clamp(ray.dot(R_imu_cam * there->ray), -1.0, 1.0)));
-  }
-  if (seen == 0) return false;
+  const std::vector<const WindowFrame*> keyframes = keyframesBefore(index);
+  Overlap overlap = overlapOf(index, keyframes);
+  if (overlap.seen == 0) return false;
   // The last good frame before darkness keeps what it saw.
-  if (continued < 0.4 * seen) return true;
-  if (shared == 0 || shared < options_.keyframe.min_overlap * seen) return true;
-  if (median(std::move(parallax)) > options_.keyframe.parallax_deg * kDegree) return true;
+  if (overlap.continued < 0.4 * overlap.expected) return true;
+  if (overlap.shared == 0 || overlap.shared < options_.keyframe.min_overlap * overlap.seen) {
+    return true;
+  }
+  if (median(std::move(overlap.parallax)) > options_.keyframe.parallax_deg * kDegree) return true;
+  const WindowFrame* newest = nullptr;
+  for (const WindowFrame* keyframe : keyframes) {
+    if (keyframe == nullptr) continue;
+    if (newest == nullptr || newest->id < keyframe->id) newest = keyframe;
+  }
+  const WindowFrame& keyframe = newest != nullptr ? *newest : *last;
   if ((frame.state.p_odom - keyframe.state.p_odom).norm() > options_.keyframe.distance_m) {
     return true;
   }

@@ -5,7 +5,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <utility>
 
 #include "parkade/core/median.hpp"
 #include "parkade/vio/reprojection.hpp"
@@ -21,6 +21,9 @@ constexpr double kGatePx = 4.0;              // and at least this
 constexpr double kCameraGateSquared = 12.0;  // of a camera's median feature: far outside chance
 constexpr double kCameraGatePx = 2.0;
 constexpr int kMinCameraFeatures = 6;
+constexpr std::size_t kMinContradicting = 2;  // cameras, that a prediction may be wrong by
+constexpr std::size_t kLeastInSight = 8;      // landmarks, as a part of the budget: an eighth
+constexpr TimeNs kUnseenForLong = kNsPerSecond;
 constexpr double kNoisePrior = 4.0;  // views' coordinates that the common noise counts for
 constexpr double kLeastNoiseFactor = 0.7;
 constexpr double kMostNoiseFactor = 10.0;
@@ -43,6 +46,86 @@ struct Innovation {
   double squared;  // over its covariance
   double px;
 };
+
+// How far the newest frame's views of placed features lie from where its state predicts them.
+std::vector<Innovation> innovationsOf(const Window& window,
+                                      const Eigen::Matrix<double, 6, 6>& spread) {
+  std::vector<Innovation> innovations;
+  const WindowFrame& newest = window.frames.back();
+  const PoseMatrices target(newest.state);
+  for (const auto& [id, feature] : window.features) {
+    if (!feature.has_point || feature.last_seen_id != newest.id) continue;
+    const WindowFrame* anchor_frame = window.find(feature.anchor_frame_id);
+    if (anchor_frame == nullptr || anchor_frame->id == newest.id) continue;
+    const PoseMatrices anchor(anchor_frame->state);
+    for (const WindowObservation& o : feature.observations) {
+      if (o.frame_id != newest.id) continue;
+      Eigen::Vector2d pixel;
+      ReprojectionJacobians j;
+      Innovation innovation{id, o.camera, 1e6, 1e3};
+      if (reproject(window.cameras[static_cast<std::size_t>(feature.anchor_camera)],
+                    window.cameras[static_cast<std::size_t>(o.camera)], anchor, target, anchor,
+                    target, feature.direction, feature.inverse_distance, pixel, &j)) {
+        const Eigen::Vector2d error = pixel - observedPixel(window, o);
+        const double noise = o.sigma_px * o.sigma_px + kLandmarkSigmaPx * kLandmarkSigmaPx;
+        const Eigen::Matrix2d S = j.d_px_d_target * spread * j.d_px_d_target.transpose() +
+                                  noise * Eigen::Matrix2d::Identity();
+        innovation.squared = error.dot(S.ldlt().solve(error));
+        innovation.px = error.norm();
+      }
+      innovations.push_back(innovation);
+    }
+  }
+  return innovations;
+}
+
+struct JudgedCameras {
+  std::size_t count = 0;  // with enough features to judge by
+  std::vector<int> bad;   // most of whose features miss
+};
+
+JudgedCameras judgeCameras(const std::vector<Innovation>& innovations, std::size_t cameras) {
+  std::vector<std::vector<double>> squared(cameras);
+  std::vector<std::vector<double>> px(cameras);
+  for (const Innovation& innovation : innovations) {
+    squared[static_cast<std::size_t>(innovation.camera)].push_back(innovation.squared);
+    px[static_cast<std::size_t>(innovation.camera)].push_back(innovation.px);
+  }
+  JudgedCameras judged;
+  for (std::size_t c = 0; c < cameras; ++c) {
+    if (static_cast<int>(squared[c].size()) < kMinCameraFeatures) continue;
+    ++judged.count;
+    if (median(squared[c]) > kCameraGateSquared && median(px[c]) > kCameraGatePx) {
+      judged.bad.push_back(static_cast<int>(c));
+    }
+  }
+  return judged;
+}
+
+// Landmarks out of sight hold their places until their keyframes leave, which takes long after
+// darkness. Where next to none is in sight, those unseen for longest give theirs away.
+void makeRoom(const Window& window, std::size_t budget, std::size_t candidates,
+              std::vector<WindowFeature*>& chosen) {
+  const WindowFrame& newest = window.frames.back();
+  const auto in_sight = static_cast<std::size_t>(std::count_if(
+      chosen.begin(), chosen.end(),
+      [&](const WindowFeature* feature) { return feature->last_seen_id == newest.id; }));
+  const std::size_t room = budget - std::min(budget, chosen.size());
+  if (in_sight + room >= budget / kLeastInSight) return;
+  const std::size_t wanted = std::min(candidates, budget / 2 - in_sight);
+  if (wanted <= room) return;
+  std::vector<std::pair<TimeNs, WindowFeature*>> unseen;
+  for (WindowFeature* feature : chosen) {
+    const WindowFrame* last = window.find(feature->observations.back().frame_id);
+    const TimeNs seen = last != nullptr ? last->t_ns : 0;
+    if (newest.t_ns - seen > kUnseenForLong) unseen.emplace_back(seen, feature);
+  }
+  std::stable_sort(unseen.begin(), unseen.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  unseen.resize(std::min(unseen.size(), wanted - room));
+  for (const auto& [seen, feature] : unseen) feature->selected = false;
+  std::erase_if(chosen, [](const WindowFeature* feature) { return !feature->selected; });
+}
 
 // What a landmark's views miss it by.
 struct Missed {
@@ -104,56 +187,29 @@ void FeatureManager::add(Window& window, const Observations& observations) {
 }
 
 GateResult FeatureManager::gateNewest(Window& window, const Eigen::Matrix<double, 6, 6>& spread) {
+  const std::vector<Innovation> innovations = innovationsOf(window, spread);
+  const JudgedCameras judged = judgeCameras(innovations, window.cameras.size());
   GateResult result;
-  const WindowFrame& newest = window.frames.back();
-  const PoseMatrices target(newest.state);
-  std::vector<Innovation> innovations;
-  std::vector<std::vector<double>> squared(window.cameras.size());
-  std::vector<std::vector<double>> px(window.cameras.size());
-  for (const auto& [id, feature] : window.features) {
-    if (!feature.has_point || feature.last_seen_id != newest.id) continue;
-    const WindowFrame* anchor_frame = window.find(feature.anchor_frame_id);
-    if (anchor_frame == nullptr || anchor_frame->id == newest.id) continue;
-    const PoseMatrices anchor(anchor_frame->state);
-    for (const WindowObservation& o : feature.observations) {
-      if (o.frame_id != newest.id) continue;
-      Eigen::Vector2d pixel;
-      ReprojectionJacobians j;
-      const auto camera = static_cast<std::size_t>(o.camera);
-      Innovation innovation{id, o.camera, 1e6, 1e3};
-      if (reproject(window.cameras[static_cast<std::size_t>(feature.anchor_camera)],
-                    window.cameras[camera], anchor, target, anchor, target, feature.direction,
-                    feature.inverse_distance, pixel, &j)) {
-        const Eigen::Vector2d error = pixel - observedPixel(window, o);
-        const double noise = o.sigma_px * o.sigma_px + kLandmarkSigmaPx * kLandmarkSigmaPx;
-        const Eigen::Matrix2d S = j.d_px_d_target * spread * j.d_px_d_target.transpose() +
-                                  noise * Eigen::Matrix2d::Identity();
-        innovation.squared = error.dot(S.ldlt().solve(error));
-        innovation.px = error.norm();
-      }
-      innovations.push_back(innovation);
-      squared[camera].push_back(innovation.squared);
-      px[camera].push_back(innovation.px);
-    }
-  }
+  result.checked = static_cast<int>(innovations.size());
+  // The world does not move all around the car at once.
+  const std::size_t bad = judged.bad.size();
+  contradicted_ = bad >= kMinContradicting && 2 * bad >= judged.count;
+  result.contradicted = contradicted_;
+  if (contradicted_) return result;
+  result.cameras = judged.bad;
 
-  std::vector<char> camera_bad(window.cameras.size(), 0);
-  for (std::size_t c = 0; c < window.cameras.size(); ++c) {
-    if (static_cast<int>(squared[c].size()) < kMinCameraFeatures) continue;
-    if (median(squared[c]) > kCameraGateSquared && median(px[c]) > kCameraGatePx) {
-      camera_bad[c] = 1;
-      result.cameras.push_back(static_cast<int>(c));
-    }
-  }
+  const int newest = window.frames.back().id;
+  const auto isBad = [&](int camera) {
+    return std::find(judged.bad.begin(), judged.bad.end(), camera) != judged.bad.end();
+  };
   const auto erase = [&](WindowFeature& feature, int camera) {
     std::erase_if(feature.observations, [&](const WindowObservation& o) {
-      return o.frame_id == newest.id && o.camera == camera;
+      return o.frame_id == newest && o.camera == camera;
     });
   };
   for (const Innovation& innovation : innovations) {
-    ++result.checked;
-    const bool bad_camera = camera_bad[static_cast<std::size_t>(innovation.camera)] != 0;
-    if (!bad_camera && (innovation.squared < kGateSquared || innovation.px < kGatePx)) continue;
+    const bool fits = innovation.squared < kGateSquared || innovation.px < kGatePx;
+    if (fits && !isBad(innovation.camera)) continue;
     ++result.rejected;
     WindowFeature& feature = window.features.at(innovation.id);
     erase(feature, innovation.camera);
@@ -219,6 +275,7 @@ std::vector<WindowFeature*> FeatureManager::select(Window& window) {
                      return a->observations.size() > b->observations.size();
                    });
   const auto budget = static_cast<std::size_t>(options_.window.max_landmarks);
+  makeRoom(window, budget, candidates.size(), chosen);
   for (int level = 1; chosen.size() < budget && !candidates.empty(); ++level) {
     std::vector<WindowFeature*> later;
     for (WindowFeature* feature : candidates) {
@@ -259,7 +316,7 @@ int FeatureManager::rejectOutliers(Window& window, const std::vector<WindowFeatu
     if (freedom > 0.0) missed.push_back({feature, squares, freedom});
     if (removed == 0) continue;
     rejected += static_cast<int>(removed);
-    ++feature->failures;
+    if (!contradicted_) ++feature->failures;
     if (feature->observations.size() < 2 || feature->failures >= kMaxFailures) {
       feature->has_point = false;
       feature->selected = false;

@@ -17,6 +17,9 @@ struct GateResult {
   int checked = 0;
   int rejected = 0;
   std::vector<int> cameras;  ///< that contradict the prediction as a whole
+  /// Half of the cameras or more do, and at least two: then the prediction is not believed, nothing
+  /// is rejected, and no feature's failures are counted until the next frame.
+  bool contradicted = false;
 };
 
 /// Keeps the window's features: takes observations in, refuses those that contradict the IMU's
@@ -34,14 +37,16 @@ class FeatureManager {
   /// Compares the newest frame's observations of placed features with the predicted state. `spread`
   /// is the covariance of the newest frame's pose relative to the frames before it (position,
   /// rotation). A camera most of whose features miss loses all of them: a car that fills its view
-  /// moves its features alike, so that a robust loss alone would follow it.
+  /// moves its features alike, so that a robust loss alone would follow it. Where most cameras
+  /// would, the frame is left as it is.
   GateResult gateNewest(Window& window, const Eigen::Matrix<double, 6, 6>& spread);
 
   /// Places features without a point.
   void triangulateNew(Window& window);
 
   /// The features of the next solve: those of the last one, filled up to the budget, spread over
-  /// cameras and image regions, longest tracks first.
+  /// cameras and image regions, longest tracks first. Where next to none of them is in sight, those
+  /// unseen for long make room.
   std::vector<WindowFeature*> select(Window& window);
 
   /// Removes observations that miss by more than the limit; returns how many. What the others miss
@@ -50,11 +55,15 @@ class FeatureManager {
 
   /// Forgets failures, for the states that caused them have been replaced.
   void forgive(Window& window);
-  void clear() { banned_.clear(); }
+  void clear() {
+    banned_.clear();
+    contradicted_ = false;
+  }
 
  private:
   VioOptions options_;
   std::set<std::uint64_t> banned_;  ///< features that contradicted too often, while still tracked
+  bool contradicted_ = false;       ///< the newest frame's prediction
 };
 
 }  // namespace parkade

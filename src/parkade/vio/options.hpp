@@ -65,7 +65,7 @@ struct VioStandstillOptions {
 
   void visit(OptionVisitor& v) {
     v.field("enable", enable, "Detect rest and hold the car's pose there.");
-    v.field("window_s", window_s, "s", "Stretch of IMU readings that must be quiet.", 0.1, 5.0);
+    v.field("window_s", window_s, "s", "Stretch of IMU readings that must be quiet.", 0.1, 2.0);
     v.field("noise_tolerance", noise_tolerance, "ratio",
             "Spread of the readings that counts as quiet, over the sensor's white noise.", 1.0,
             100.0);
@@ -79,7 +79,7 @@ struct VioStandstillOptions {
             "Median shift of a camera's features that still counts as rest; most cameras decide.",
             0.0, 20.0);
     v.field("max_speed", max_speed, "m/s",
-            "Without images, rest is only believed below this estimated speed.", 0.0, 10.0);
+            "Without images, a car comes to rest only below this estimated speed.", 0.0, 10.0);
   }
 };
 

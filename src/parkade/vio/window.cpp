@@ -106,6 +106,12 @@ void Window::fixGlobals() {
   }
 }
 
+std::uint64_t camerasOf(const Observations& observations) {
+  std::uint64_t cameras = 0;
+  for (const auto& [id, o] : observations) cameras |= std::uint64_t{1} << (o.camera & 63);
+  return cameras;
+}
+
 int Window::indexOf(int frame_id) const {
   const auto it = std::lower_bound(frames.begin(), frames.end(), frame_id,
                                    [](const WindowFrame& frame, int id) { return frame.id < id; });

@@ -46,6 +46,8 @@ struct WindowFrame {
   int id = 0;  ///< counts frame sets
   TimeNs t_ns = 0;
   bool keyframe = false;
+  std::uint64_t cameras = 0;         ///< that saw something here, one bit each
+  std::uint64_t steady_cameras = 0;  ///< of them, those that did in the frame set before, too
 
   NavState state;
   ImuBias bias;
@@ -113,6 +115,9 @@ struct WindowObservation {
 
 /// Features of one frame set and where they were seen.
 using Observations = std::vector<std::pair<std::uint64_t, WindowObservation>>;
+
+/// The cameras of one frame set that saw something, one bit each.
+std::uint64_t camerasOf(const Observations& observations);
 
 /// What is known of a landmark's inverse distance before any image: it keeps those without parallax
 /// (a car at rest, pure turning) where landmarks are; a few millimetres of motion outweigh it. All

@@ -90,6 +90,7 @@ SolveSummary solveWindow(Window& window, const std::vector<WindowFeature*>& feat
   LinearSystem trial(options.loss, options.still);
   Backup backup;
   double damping = 0.0;
+  bool rejected = false;  // a step before
   system.linearise(window, selection);
   summary.initial_cost = system.cost();
   summary.final_cost = system.cost();
@@ -118,8 +119,10 @@ SolveSummary solveWindow(Window& window, const std::vector<WindowFeature*>& feat
     // Damping would pass for knowledge of where the whole window is.
     if (damping == 0.0) setCovariance(llt, window.globalSize(), summary);
     summary.ok = true;
-    if (decrease < options.min_decrease || summary.iterations == options.max_iterations ||
-        isSettled(step, window.frames.size(), options)) {
+    const bool last = decrease < options.min_decrease ||
+                      summary.iterations == options.max_iterations ||
+                      isSettled(step, window.frames.size(), options);
+    if (last && !rejected) {
       summary.final_cost = system.cost() - decrease;
       break;
     }
@@ -130,9 +133,10 @@ SolveSummary solveWindow(Window& window, const std::vector<WindowFeature*>& feat
       summary.final_cost = system.cost();
     } else {
       backup.restore(window, features);
+      rejected = true;
       damping = std::max(1e-4, 10.0 * damping);
-      if (damping > kMaxDamping) break;
     }
+    if (last || damping > kMaxDamping) break;
   }
   return summary;
 }

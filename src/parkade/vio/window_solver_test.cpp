@@ -275,6 +275,47 @@ TEST(WindowSolver, FindsTheMinimumThatCeresFinds) {
   }
 }
 
+TEST(WindowSolver, TakesALastStepBackThatIsWorse) {
+  std::vector<WindowFeature*> features;
+  Window window = makeWindow(4, 0.5, features);
+  Random random(5);
+  for (std::size_t i = 0; i < window.frames.size(); ++i) {
+    WindowFrame& frame = window.frames[i];
+    Vector15d step = Vector15d::Zero();
+    for (int k = 0; i > 0 && k < 3; ++k) step(k) = 0.02 * random.normal();
+    frame.apply(step);
+    // Jacobians are taken in axes turned by 3 rad, so that steps go the wrong way.
+    const NavState state = frame.state;
+    frame.fixLinearisation();
+    const SO3 turn = SO3::exp(Eigen::Vector3d(0.0, 0.0, 3.0));
+    frame.lin_state.R_odom_imu = turn * state.R_odom_imu;
+    frame.lin_state.p_odom = turn * state.p_odom;
+    frame.lin_state.v_odom = turn * state.v_odom;
+    frame.delta.head<3>() = state.p_odom - frame.lin_state.p_odom;
+    frame.delta.segment<3>(3) = (frame.lin_state.R_odom_imu.inverse() * state.R_odom_imu).log();
+    frame.delta.segment<3>(6) = state.v_odom - frame.lin_state.v_odom;
+  }
+  SolveOptions options;
+  options.max_iterations = 3;  // the second step is worse, and so is the last
+  const auto cost = [&] {
+    FactorSelection selection = FactorSelection::all(window);
+    selection.features = features;
+    LinearSystem system(options.loss, options.still);
+    return system.linearise(window, selection);
+  };
+  const double before = cost();
+  const Window start = window;
+  std::vector<WindowFeature> start_features;
+  for (const WindowFeature* f : features) start_features.push_back(*f);
+  (void)solveWindow(window, features, options);
+  EXPECT_LE(cost(), before + options.min_decrease);
+  window = start;
+  for (std::size_t i = 0; i < features.size(); ++i) *features[i] = start_features[i];
+  options.max_iterations = 2;  // no step was worse before: the last is not looked back at
+  (void)solveWindow(window, features, options);
+  EXPECT_GT(cost(), 1.5 * before) << "the case has no step that is worse";
+}
+
 class WindowGradient : public ::testing::TestWithParam<bool> {};
 
 TEST_P(WindowGradient, IsThatOfTheCost) {
