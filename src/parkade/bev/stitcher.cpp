@@ -192,7 +192,11 @@ void BevStitcher::updateGains(const FrameSet& frames) {
   const Eigen::VectorXd solved =
       normal.ldlt().solve(right).cwiseMax(-std::log(3.0)).cwiseMin(std::log(3.0));
   const double share = has_gains_ ? options_.gain_smoothing : 1.0;
-  log_gains_ += share * (solved - log_gains_);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    // Who gave no picture keeps his: nothing tells another.
+    if (frames.images[static_cast<std::size_t>(i)].empty()) continue;
+    log_gains_[i] += share * (solved[i] - log_gains_[i]);
+  }
   has_gains_ = true;
 }
 

@@ -5,12 +5,15 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <utility>
 
 #include "parkade/core/check.hpp"
+#include "parkade/core/units.hpp"
 #include "parkade/geometry/se2.hpp"
 #include "parkade/pipeline/stitched_views.hpp"
 #include "parkade/semantics/networks/segmentation.hpp"
@@ -28,23 +31,47 @@ double commonTurn(const std::vector<SE3>& before, const std::vector<SE3>& after)
   return before.empty() ? 0.0 : sum / static_cast<double>(before.size());
 }
 
+// What goes by which camera shows what.
+struct Sight {
+  Sight(const BevStitcher& stitcher, const Rig& rig, const std::vector<bool>& present,
+        const SemanticFrontEndOptions& options)
+      : views(viewsOf(stitcher, rig, present)),
+        objects(stitcher.geometry(), views, options.objects),
+        smear(stitcher.geometry(), views, options.smear) {}
+
+  BevViews views;
+  ObjectExtractor objects;
+  SmearFinder smear;
+};
+
 }  // namespace
 
 struct SemanticFrontEnd::Impl {
   Impl(const Rig& r, const SemanticFrontEndOptions& o, SegmentationNetwork n)
       : options(o),
+        rig(r),
         stitcher(r, o.bev),
         network(std::move(n)),
         ground(o.ground),
         tracker(o.agents) {}
 
+  // Of the cameras that gave a picture: others' places show what they would have shown.
+  const Sight& sightOf(const FrameSet& frames) {
+    constexpr std::size_t kMost = 16;  // of cameras that fail by turns
+    std::vector<bool> present;
+    for (const cv::Mat& image : frames.images) present.push_back(!image.empty());
+    if (sights.size() >= kMost && sights.count(present) == 0) sights.clear();
+    std::unique_ptr<Sight>& sight = sights[present];
+    if (sight == nullptr) sight = std::make_unique<Sight>(stitcher, rig, present, options);
+    return *sight;
+  }
+
   SemanticFrontEndOptions options;
+  Rig rig;
   BevStitcher stitcher;
   SegmentationNetwork network;
   GroundPlaneEstimator ground;
-  BevViews bev_views;
-  std::unique_ptr<ObjectExtractor> objects;  // made when the masks are known
-  std::unique_ptr<SmearFinder> smear;
+  std::map<std::vector<bool>, std::unique_ptr<Sight>> sights;  // by the cameras present
   AgentTracker tracker;
   std::unique_ptr<ZoneMarkerFrontEnd> zone_markers;  // null: there are no networks for it
   std::unique_ptr<PaintedNumberFrontEnd> numbers;    // null likewise
@@ -88,11 +115,6 @@ Result<std::unique_ptr<SemanticFrontEnd>> SemanticFrontEnd::create(
   }
   for (const RigCamera& camera : rig.cameras) impl->cameras.push_back(camera.T_vehicle_cam);
   impl->told = impl->cameras;
-  impl->bev_views = viewsOf(impl->stitcher, rig);
-  impl->objects = std::make_unique<ObjectExtractor>(impl->stitcher.geometry(), impl->bev_views,
-                                                    options.objects);
-  impl->smear =
-      std::make_unique<SmearFinder>(impl->stitcher.geometry(), impl->bev_views, options.smear);
   auto zone_markers = ZoneMarkerFrontEnd::create(rig, masks, options.zone_markers);
   if (!zone_markers) return zone_markers.error();
   impl->zone_markers = std::move(zone_markers).value();
@@ -178,21 +200,26 @@ Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames) {
   frame.relief = std::move(view.floor.relief);
   frame.rig_turn = commonTurn(m.told, m.cameras);
   frame.attitude_sigma = std::max(view.floor.sigma_pitch, view.floor.sigma_roll);
-  frame.line_points = linePointsFromLabels(frame.labels, frame.attitude_sigma, m.options.lines);
+  const Sight& sight = m.sightOf(frames);
+  frame.line_points =
+      linePointsFromLabels(frame.labels, sight.views, frame.attitude_sigma, m.options.lines);
   frame.line_segments = segmentsOf(frame.line_points);
   // Slots need lines to a fraction of a pixel; registration has done better with the labels' own.
   const Lines lines = extractLines(bev, frame.labels, frame.attitude_sigma, m.options.slot_lines);
-  frame.slots = extractSlots(bev, frame.labels, lines.segments, m.bev_views,
-                             {frame.attitude_sigma, view.floor.sigma_height}, m.options.slots);
-  FoundObjects found = m.objects->extract(frame.labels, frame.slots, frame.attitude_sigma);
+  frame.slots = extractSlots(
+      bev, frame.labels, lines.segments, sight.views,
+      {std::hypot(frame.attitude_sigma, m.options.slot_lines.sight_sigma_deg * kDegree),
+       view.floor.sigma_height},
+      m.options.slots);
+  FoundObjects found = sight.objects.extract(frame.labels, frame.slots, frame.attitude_sigma);
   frame.objects = std::move(found.objects);
   frame.moving = m.tracker.update(found.agents, SE2::fromSE3(view.now.T_odom_vehicle), frames.t_ns);
   frame.raised = std::move(view.raised);
-  frame.smear = m.smear->find(frame.labels, frame.raised);
+  frame.smear = sight.smear.find(frame.labels, frame.raised);
   m.feature_clock.add(since(begin));
   if (m.numbers != nullptr) {
     begin = Clock::now();
-    const Status read = m.numbers->read(frames, m.bev_views, view.now, frame);
+    const Status read = m.numbers->read(frames, sight.views, view.now, frame);
     if (!read) return read.error();
     m.number_clock.add(since(begin));
   }

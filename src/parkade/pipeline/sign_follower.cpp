@@ -2,12 +2,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/pipeline/sign_follower.hpp"
 
+#include <algorithm>
+#include <string>
 #include <utility>
 
+#include "parkade/core/split.hpp"
 #include "parkade/semantics/texts/guide_text.hpp"
 #include "parkade/semantics/texts/zone_marker_views.hpp"
 
 namespace parkade {
+namespace {
+
+void keepLimits(const std::string& limits, std::vector<ZoneMarkerView>& views) {
+  const std::vector<std::string> known = split(limits, ' ');
+  for (ZoneMarkerView& view : views) {
+    for (std::vector<TextReading>& face : view.readings) {
+      std::erase_if(face, [&](const TextReading& reading) {
+        return !reading.text.empty() &&
+               std::find(known.begin(), known.end(), reading.text) == known.end();
+      });
+    }
+  }
+}
+
+}  // namespace
+
 SignFollower::SignFollower(const SignFollowerOptions& options)
     : options_(options), guides_(options.guide), limits_(options.limit) {}
 
@@ -19,11 +38,12 @@ Status SignFollower::add(const cv::Mat& labels, const cv::Mat& image, const cv::
   const bool knows_arrows = reader.letters().find('^') != std::string::npos;
   for (const SemanticClass sign : {SemanticClass::kGuideSign, SemanticClass::kSpeedLimitSign}) {
     const bool limit = sign == SemanticClass::kSpeedLimitSign;
-    const Result<std::vector<ZoneMarkerView>> views =
+    Result<std::vector<ZoneMarkerView>> views =
         viewsOf(findSigns(labels, image, mask, camera, T_up_cam.rotation(), sign, options_.faces),
                 T_up_cam.translation(), limit || knows_arrows ? &reader : nullptr,
                 limit ? "0123456789" : kGuideLetters);
     if (!views) return views.error();
+    if (limit) keepLimits(options_.limits, *views);
     (limit ? limits_ : guides_).add(*views, t_ns);
   }
   return {};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <opencv2/core/mat.hpp>
+#include <string>
 #include <vector>
 
 #include "parkade/camera/camera.hpp"
@@ -18,6 +19,7 @@ namespace parkade {
 struct SignFollowerOptions {
   bool enabled = true;
   double text_confidence = 0.9;
+  std::string limits = "5 8 10 15 20 25 30 40 50";
   ZoneMarkerFaceOptions faces;
   ZoneMarkerTrackerOptions guide = hanging();
   ZoneMarkerTrackerOptions limit = plate();
@@ -26,6 +28,7 @@ struct SignFollowerOptions {
     v.field("enabled", enabled, "Whether guide signs and speed-limit signs are looked for.");
     v.field("text_confidence", text_confidence, "probability",
             "A sign's text is told when read this surely over all views.", 0.1, 0.999999);
+    v.field("limits", limits, "Speed limits there are, with spaces between; others are misread.");
     v.group("faces", faces);
     v.group("guide", guide);
     v.group("limit", limit);

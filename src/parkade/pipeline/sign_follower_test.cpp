@@ -101,11 +101,11 @@ class SignDrive : public testing::Test {
   }
 
   // What is told of a drive of 6.5 m towards the signs.
-  std::vector<FollowedSign> drive(double fray) {
+  std::vector<FollowedSign> drive(double fray, const SignFollowerOptions& options = {}) {
     Result<ZoneTextReader> reader =
         ZoneTextReader::load(std::string(PARKADE_SOURCE_DIR) + "/models/zone_text.yaml");
     EXPECT_TRUE(reader) << reader.error().message;
-    SignFollower follower({});
+    SignFollower follower(options);
     Random random(8);
     std::vector<FollowedSign> all;
     for (int k = 0; k < 14; ++k) {
@@ -154,6 +154,19 @@ TEST_F(SignDrive, SignsArePlacedAndRead) {
     EXPECT_TRUE(text == "10" || (fray > 0.0 && text.empty())) << fray << " " << text;
     EXPECT_TRUE(meaning == "parking_left" || (fray > 0.0 && meaning.empty())) << fray << meaning;
   }
+}
+
+// A garage whose limits are others holds no sign of that one: it was misread.
+TEST_F(SignDrive, LimitsThatThereAreNoneOfAreNotRead) {
+  SignFollowerOptions options;
+  options.limits = "30 50";
+  int limits = 0;
+  for (const FollowedSign& told : drive(0.0, options)) {
+    if (told.semantic_class != SemanticClass::kSpeedLimitSign) continue;
+    ++limits;
+    EXPECT_EQ(told.sign.text, "");
+  }
+  EXPECT_GT(limits, 0);
 }
 
 }  // namespace

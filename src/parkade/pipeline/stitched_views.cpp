@@ -6,7 +6,7 @@
 
 namespace parkade {
 
-BevViews viewsOf(const BevStitcher& stitcher, const Rig& rig) {
+BevViews viewsOf(const BevStitcher& stitcher, const Rig& rig, const std::vector<bool>& present) {
   constexpr double kLeastHeight = 0.1;  // m
   const BevGeometry& g = stitcher.geometry();
   BevViews views;
@@ -15,6 +15,7 @@ BevViews viewsOf(const BevStitcher& stitcher, const Rig& rig) {
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
     const Eigen::Vector3d place = rig.cameras[i].T_vehicle_cam.translation();
     views.views.push_back({place.head<2>(), std::max(kLeastHeight, place.z())});
+    if (i < present.size() && !present[i]) continue;
     const GroundTable& table = stitcher.table(static_cast<int>(i));
     const cv::Rect& roi = table.roi();
     for (int v = 0; v < roi.height; ++v) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "parkade/bev/stitcher.hpp"
 #include "parkade/camera/rig.hpp"
 #include "parkade/semantics/bev_views.hpp"
@@ -9,7 +11,9 @@
 namespace parkade {
 
 /// Which camera each pixel of the stitcher's pictures is mostly of: the one with the largest
-/// weight. Set the stitcher's masks before.
-BevViews viewsOf(const BevStitcher& stitcher, const Rig& rig);
+/// weight, of those that are present (by camera; more than given: are). Set the stitcher's masks
+/// before.
+BevViews viewsOf(const BevStitcher& stitcher, const Rig& rig,
+                 const std::vector<bool>& present = {});
 
 }  // namespace parkade

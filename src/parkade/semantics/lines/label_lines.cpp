@@ -9,6 +9,8 @@
 #include <set>
 #include <tuple>
 
+#include "parkade/semantics/standing/tilt_error.hpp"
+
 namespace parkade {
 namespace {
 
@@ -74,14 +76,19 @@ Patch lookAt(const BevLabels& bev, int u0, int v0, int half, const LabelLineOpti
 
 }  // namespace
 
-std::vector<LinePoint> linePointsFromLabels(const BevLabels& labels, double attitude_sigma,
+std::vector<LinePoint> linePointsFromLabels(const BevLabels& labels, const BevViews& views,
+                                            double attitude_sigma,
                                             const LabelLineOptions& options) {
   std::vector<LinePoint> points;
   const BevGeometry& g = labels.geometry;
   const int half = static_cast<int>(std::lround(options.window_m / g.metres_per_px));
   std::set<std::tuple<int, int, int>> taken;
-  for (int v = 0; v < labels.labels.rows; v += options.stride_px) {
-    for (int u = 0; u < labels.labels.cols; u += options.stride_px) {
+  // A square lattice turned by atan(1 / stride): one along rows and columns passes by lines that
+  // run along them and are narrower than the stride.
+  const int stride = options.stride_px;
+  const int period = stride > 1 ? stride * stride + 1 : 1;
+  for (int v = 0; v < labels.labels.rows; ++v) {
+    for (int u = (period - stride * v % period) % period; u < labels.labels.cols; u += period) {
       const auto c = static_cast<SemanticClass>(labels.labels.at<std::uint8_t>(v, u));
       if (!isLine(c)) continue;
       const Patch patch = lookAt(labels, u, v, half, options);
@@ -95,11 +102,10 @@ std::vector<LinePoint> linePointsFromLabels(const BevLabels& labels, double atti
           static_cast<int>(std::floor(point.p_level.x() / options.spacing_m)),
           static_cast<int>(std::floor(point.p_level.y() / options.spacing_m)), static_cast<int>(c)};
       if (!taken.insert(cell).second) continue;
-      const Eigen::Vector2d ray = point.p_level - g.center;
-      constexpr double kCameraHeight = 1.0;
-      point.sigma =
-          std::hypot(options.sigma_px * g.metres_per_px,
-                     attitude_sigma * point.p_level.norm() / kCameraHeight * point.normal.dot(ray));
+      const BevViews::View& view = views.viewAt(g, point.p_level);
+      const Eigen::Matrix2d J = groundTiltJacobian(point.p_level - view.foot, view.height);
+      point.sigma = std::hypot(options.sigma_px * g.metres_per_px,
+                               attitude_sigma * (J * point.normal).norm());
       points.push_back(point);
     }
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "parkade/core/options.hpp"
+#include "parkade/semantics/bev_views.hpp"
 #include "parkade/types/semantic_features.hpp"
 
 namespace parkade {
@@ -18,7 +19,8 @@ struct LabelLineOptions {
   int min_confidence = 128;
 
   void visit(OptionVisitor& v) {
-    v.field("stride_px", stride_px, "px", "Every so many pixels of paint are looked at.", 1, 20);
+    v.field("stride_px", stride_px, "px", "Paint is looked at in pixels about so far apart.", 1,
+            20);
     v.field("window_m", window_m, "m", "Half side of the piece of paint around a pixel.", 0.1, 2.0);
     v.field("max_width_m", max_width_m, "m", "Wider paint is no line.", 0.05, 1.0);
     v.field("spacing_m", spacing_m, "m", "Between line points.", 0.02, 1.0);
@@ -30,9 +32,9 @@ struct LabelLineOptions {
 /// Points on the middle of painted lines (slot, lane and stop lines), from the labels of a
 /// bird's-eye picture alone: the paint around a pixel must be long and narrow; its direction is the
 /// main axis of that paint, its middle the mean of a short piece across. sigma holds the attitude's
-/// error, as types/semantic_features.hpp asks.
-std::vector<LinePoint> linePointsFromLabels(const BevLabels& labels, double attitude_sigma,
-                                            const LabelLineOptions& options);
+/// error (attitude_sigma, rad) as the camera that shows the point sees it.
+std::vector<LinePoint> linePointsFromLabels(const BevLabels& labels, const BevViews& views,
+                                            double attitude_sigma, const LabelLineOptions& options);
 
 /// Straight pieces through line points of one class: those that share a direction to 5 degrees and
 /// an offset to a few centimetres, without gaps over a metre, 1 m long or more.

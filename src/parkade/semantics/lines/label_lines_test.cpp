@@ -29,11 +29,15 @@ BevLabels drawn(const Eigen::Vector2d& through, double angle, double half_length
   return bev;
 }
 
+std::vector<LinePoint> pointsOf(const BevLabels& bev, double attitude_sigma = 0.0) {
+  return linePointsFromLabels(bev, BevViews::fromMiddle(bev.geometry), attitude_sigma, {});
+}
+
 TEST(LabelLines, PointsLieOnTheMiddleAndSegmentsAlongTheLine) {
   for (const double angle : {0.0, 0.3, 0.8, M_PI / 2.0, 2.5}) {
     const Eigen::Vector2d through(1.03, 2.017);
     const BevLabels bev = drawn(through, angle, 2.0, 0.12);
-    const std::vector<LinePoint> points = linePointsFromLabels(bev, 0.0, {});
+    const std::vector<LinePoint> points = pointsOf(bev);
     ASSERT_GT(points.size(), 15U) << angle;
     const Eigen::Vector2d across(-std::sin(angle), std::cos(angle));
     double squares = 0.0;
@@ -53,11 +57,37 @@ TEST(LabelLines, PointsLieOnTheMiddleAndSegmentsAlongTheLine) {
   }
 }
 
+// Two pixels wide, along the car and across it, at every offset against the pixels looked at.
+TEST(LabelLines, NoOffsetHidesAThinLine) {
+  for (const double angle : {0.0, M_PI / 2.0}) {
+    for (int k = 0; k < 10; ++k) {
+      const Eigen::Vector2d through(1.0 + 0.04 * k, 2.0 + 0.04 * k);
+      EXPECT_GE(pointsOf(drawn(through, angle, 2.0, 0.08)).size(), 12U) << angle << " " << k;
+    }
+  }
+}
+
+// From h over the ground, d away, a tilt of a moves what lies across the line of sight's foot by
+// a (d^2 + h^2) / h; from twice as high by about half.
+TEST(LabelLines, SigmaKnowsTheCameraThatSeesThePoint) {
+  const BevLabels bev = drawn({5.0, 0.0}, M_PI / 2.0, 1.0, 0.12);
+  const double tilt = 0.01;
+  for (const double height : {0.7, 1.4}) {
+    const BevViews views = BevViews::fromMiddle(bev.geometry, height);
+    for (const LinePoint& point : linePointsFromLabels(bev, views, tilt, {})) {
+      const Eigen::Vector2d ray = point.p_level - bev.geometry.center;
+      if (std::abs(ray.y()) > 0.1) continue;
+      const double moved = tilt * (ray.squaredNorm() + height * height) / height;
+      EXPECT_NEAR(point.sigma, std::hypot(moved, 0.35 * 0.04), 0.02 * moved);
+    }
+  }
+}
+
 TEST(LabelLines, WidePaintIsNoLine) {
-  EXPECT_TRUE(linePointsFromLabels(drawn({1.0, 1.0}, 0.2, 1.0, 0.8), 0.0, {}).empty());
+  EXPECT_TRUE(pointsOf(drawn({1.0, 1.0}, 0.2, 1.0, 0.8)).empty());
   BevLabels unsure = drawn({1.0, 1.0}, 0.2, 2.0, 0.12);
   unsure.confidence = cv::Scalar(50);
-  EXPECT_TRUE(linePointsFromLabels(unsure, 0.0, {}).empty());
+  EXPECT_TRUE(pointsOf(unsure).empty());
 }
 
 }  // namespace

@@ -70,6 +70,13 @@ ClassMap parseClassMap(const YamlNode& root, const std::string& path) {
     classes.fail("expected a list of at least two class names, one per output channel");
   }
   for (std::size_t i = 0; i < classes.size(); ++i) map.classes.push_back(classOf(classes.at(i)));
+  const bool floor =
+      std::find(map.classes.begin(), map.classes.end(), SemanticClass::kFloor) != map.classes.end();
+  if (map.metres_per_px > 0.0 && !floor) {
+    classes.fail(
+        "a network of bird's-eye pictures must tell floor: slots, lines and objects are found by "
+        "it");
+  }
   if (root.has("unknown_is_unseen")) {
     const YamlNode unseen = root.at("unknown_is_unseen");
     map.unknown_is_unseen = unseen.asBool();

@@ -156,7 +156,7 @@ Status SegmentationNetwork::takes(const BevGeometry& geometry) const {
   if (map.any_size || (size.width == map.width && size.height == map.height)) return {};
   return Error{fmt::format(
       "{}: the network takes {} x {} px of {} m, the bird's-eye picture has {} x {} px of {} m; "
-      "set bev.width_px, bev.height_px and bev.metres_per_px to match",
+      "set the picture's width_px, height_px and metres_per_px to match (--set, see --help)",
       map.path, map.width, map.height, map.metres_per_px, geometry.width_px, geometry.height_px,
       geometry.metres_per_px)};
 }
@@ -185,13 +185,16 @@ Result<BevLabels> SegmentationNetwork::segment(const BevImage& bev) {
   const Status status = impl_->run(image, result.labels, result.confidence, slot_line);
   if (!status) return status.error();
   if (size != bev.image.size() || padded != size) {
+    // Exact: by the middles of pixels, as the picture was scaled; the other rounds down, half a
+    // pixel off.
     const cv::Rect used(cv::Point(), size);
     cv::resize(result.labels(used).clone(), result.labels, bev.image.size(), 0, 0,
-               cv::INTER_NEAREST);
+               cv::INTER_NEAREST_EXACT);
     cv::resize(result.confidence(used).clone(), result.confidence, bev.image.size(), 0, 0,
-               cv::INTER_NEAREST);
+               cv::INTER_NEAREST_EXACT);
     if (!slot_line.empty()) {
-      cv::resize(slot_line(used).clone(), slot_line, bev.image.size(), 0, 0, cv::INTER_NEAREST);
+      cv::resize(slot_line(used).clone(), slot_line, bev.image.size(), 0, 0,
+                 cv::INTER_NEAREST_EXACT);
     }
   }
   tellStrokesFromArrows(slot_line, bev.geometry.metres_per_px, result.labels);

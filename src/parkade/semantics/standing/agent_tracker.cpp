@@ -46,6 +46,7 @@ AgentTracker::Measurement AgentTracker::measure(const AgentDetection& detection,
   size[1 - longer] = side ? kCarWidth : kCarLength;
   const GroundBox whole = grownTo(box, size, detection.viewer);
   const int along = side ? longer : 1 - longer;
+  m.side = side;
   m.whole = face > kLeastFront && !(detection.cut && face < kCarWidth - 0.3);
   m.p_odom = T_odom_vehicle * whole.center;
   m.heading = wrapAngle(whole.heading + (along == 0 ? 0.0 : M_PI_2) + T_odom_vehicle.angle());
@@ -82,10 +83,21 @@ void AgentTracker::correct(Track& track, const Measurement& m) const {
     track.size = track.hits == 0 ? m.size : (0.8 * track.size + 0.2 * m.size).eval();
     // A face's direction is known up to half turns, and which face it is may be mistaken.
     double turn = std::remainder(m.heading - track.heading, M_PI);
-    if (track.hits > 0 && std::abs(turn) > M_PI_4) turn = 0.0;
-    track.heading = track.hits == 0 ? m.heading : wrapAngle(track.heading + 0.3 * turn);
+    const bool other_face = std::abs(turn) > M_PI_4;
+    // The first whole side tells what only pieces of it, taken for a front, told until then.
+    const bool born_anew = track.hits == 0 || (other_face && m.side && !track.side_seen);
+    if (other_face) turn = 0.0;
+    track.heading = born_anew ? m.heading : wrapAngle(track.heading + 0.3 * turn);
+    track.side_seen = track.side_seen || m.side;
   }
   ++track.hits;
+}
+
+void AgentTracker::turnIntoCourse(Track& track) {
+  if (!track.moving || track.semantic_class == SemanticClass::kPedestrian) return;
+  const double course = std::atan2(track.state[3], track.state[2]);
+  // Cars go along, not across.
+  if (std::abs(std::remainder(track.heading - course, M_PI)) > M_PI_4) track.heading = course;
 }
 
 void AgentTracker::judgeMotion(Track& track) const {
@@ -137,6 +149,7 @@ std::vector<MovingObservation> AgentTracker::update(const std::vector<AgentDetec
     correct(tracks_[k], measurements[d]);
     tracks_[k].seen_ns = t_ns;
     judgeMotion(tracks_[k]);
+    turnIntoCourse(tracks_[k]);
   }
   for (std::size_t d = 0; d < detections.size(); ++d) {
     if (track_of[d] >= 0) continue;
@@ -149,6 +162,7 @@ std::vector<MovingObservation> AgentTracker::update(const std::vector<AgentDetec
         options_.birth_speed * options_.birth_speed * Eigen::Matrix2d::Identity();
     track.size = measurements[d].size;
     track.heading = measurements[d].heading;
+    track.side_seen = measurements[d].side;
     track.rest = measurements[d].p_odom;
     track.hits = 1;
     track.seen_ns = t_ns;

@@ -61,6 +61,7 @@ class AgentTracker {
     Eigen::Vector2d size = Eigen::Vector2d::Zero();  ///< length, width
     double heading = 0.0;                            ///< in odom; a vehicle's up to pi
     bool whole = true;                               ///< enough was seen to tell the middle
+    bool side = false;                               ///< a face longer than any front
   };
   struct Track {
     std::uint64_t id = 0;
@@ -73,6 +74,7 @@ class AgentTracker {
     int hits = 0;
     int fast = 0;  ///< updates in a row that say that it moves (or, while it moves: rests)
     bool moving = false;
+    bool side_seen = false;  ///< the heading rests on a side
     TimeNs seen_ns = 0;
   };
   [[nodiscard]] Measurement measure(const AgentDetection& detection,
@@ -80,6 +82,7 @@ class AgentTracker {
   void predict(double dt);
   void correct(Track& track, const Measurement& measurement) const;
   void judgeMotion(Track& track) const;
+  static void turnIntoCourse(Track& track);
 
   AgentTrackerOptions options_;
   std::vector<Track> tracks_;

@@ -102,6 +102,25 @@ TEST(AgentTracker, ParkedCarsRestAlthoughTheirNearestPointMoves) {
   EXPECT_EQ(ids.size(), 2U);
 }
 
+// A car that crosses enters the picture bit by bit: its first metres pass for a front, across its
+// way. Its whole side puts that right, and so does its course.
+TEST(AgentTracker, ACarThatEntersBitByBitHeadsAlongItsWay) {
+  for (const int stands_from : {12, 100}) {
+    AgentTracker tracker({});
+    std::vector<MovingObservation> told;
+    for (int k = 0; k < 20; ++k) {
+      const double front = -4.2 + 0.4 * std::min(k, stands_from);
+      const double rear = std::max(-6.0, front - 4.6);  // nothing is seen beyond
+      GroundBox seen;
+      seen.center = {6.0, 0.5 * (front + rear)};
+      seen.size = {0.4, front - rear};
+      told = tracker.update({car(seen)}, {}, k * kStep);
+    }
+    ASSERT_EQ(told.size(), 1U) << stands_from;
+    EXPECT_LT(std::abs(std::remainder(told[0].heading - M_PI_2, M_PI)), 0.2) << stands_from;
+  }
+}
+
 TEST(AgentTracker, ComesToRestAndForgets) {
   AgentTracker tracker({});
   std::vector<MovingObservation> told;

@@ -130,7 +130,9 @@ double ZoneMarkerTracker::misfit(const Track& track, const ZoneMarkerView& view)
 
 void ZoneMarkerTracker::extend(Track& track, const ZoneMarkerView& view, TimeNs t_ns) const {
   track.views.push_back(view);
-  if (track.views.size() > static_cast<std::size_t>(options_.max_views)) {
+  // As many as it takes to be told, however few are to be kept.
+  if (track.views.size() >
+      static_cast<std::size_t>(std::max(options_.max_views, options_.told_views))) {
     track.views.pop_front();
     if (track.told > 0) --track.told;
   }
