@@ -264,6 +264,7 @@ Status MappingRun::Impl::run(SensorSource& source, const ProgressCallback& progr
 
 void MappingRun::Impl::summarise(Clock::time_point begin) {
   summary.poses = static_cast<int>(trajectory.size());
+  if (semantics != nullptr) busy_.add(semantics->busy());
   summary.processing_s = busy_.seconds();
   summary.wall_s = 1e-3 * millisecondsBetween(begin, Clock::now());
   summary.mean_tracks =

@@ -71,6 +71,11 @@ TEST(BusyTime, CountsWhatOverlapsOnce) {
   busy.add(at(90), at(150));
   busy.add(at(200), at(210));
   EXPECT_NEAR(busy.seconds(), 0.160, 1e-9);
+  // Of a stage that ends long after it began, what others have not counted.
+  BusyTime slow;
+  slow.add(at(140), at(205));
+  busy.add(slow);
+  EXPECT_NEAR(busy.seconds(), 0.210, 1e-9);
 }
 
 // A rig of one camera in a box of random dots, driven by hand: images and exact IMU readings.

@@ -66,11 +66,13 @@ void SemanticQueue::take(FrameSet frames, int number, const SE3& T_odom_vehicle,
 }
 
 void SemanticQueue::work(Look& look) {
+  look.begin = BusyTime::Clock::now();
   front_end_->placeCameras(look.cameras);
   look.frame = front_end_->look(look.frames);
   look.frames.images.clear();
+  if (look.frame) look.views = front_end_->views();
+  look.end = BusyTime::Clock::now();
   if (!look.frame) return;
-  look.views = front_end_->views();
   for (PipelineObserver* observer : observers_) {
     observer->onFeatures({front_end_->picture(), *look.frame});
   }
@@ -80,6 +82,7 @@ void SemanticQueue::enterFirst() {
   const std::unique_ptr<Look> look = std::move(looks_.front());
   looks_.pop_front();
   look->done.get();
+  busy_.add(look->begin, look->end);
   if (!look->frame) {
     if (status_) status_ = look->frame.error();
     mapper_.dropView();
@@ -88,7 +91,9 @@ void SemanticQueue::enterFirst() {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point begin = Clock::now();
   mapper_.addSemantics(*look->frame, look->views);
-  fuse_clock_.add(millisecondsBetween(begin, Clock::now()));
+  const Clock::time_point end = Clock::now();
+  fuse_clock_.add(millisecondsBetween(begin, end));
+  busy_.add(begin, end);
   for (PipelineObserver* observer : observers_) {
     observer->onMap({*look->frame, look->T_odom_vehicle, mapper_.localMap()});
   }

@@ -54,6 +54,8 @@ class SemanticQueue {
   /// Pictures that a live run took no time for.
   [[nodiscard]] int passedOver() const { return passed_over_; }
   [[nodiscard]] std::vector<StageTiming> timings() const;
+  /// When it was at work, on what has entered the map by now.
+  [[nodiscard]] const BusyTime& busy() const { return busy_; }
 
  private:
   // The features of one frame set, on their way.
@@ -64,6 +66,8 @@ class SemanticQueue {
     std::vector<SE3> cameras;
     Result<SemanticFrame> frame = Error{"not looked yet"};
     std::vector<LevelView> views;
+    BusyTime::Clock::time_point begin;
+    BusyTime::Clock::time_point end;
     std::future<void> done;
   };
 
@@ -77,6 +81,7 @@ class SemanticQueue {
   const std::vector<PipelineObserver*>& observers_;
   std::deque<std::unique_ptr<Look>> looks_;
   StageClock fuse_clock_{"fuse"};
+  BusyTime busy_;
   Status status_;
   int passed_over_ = 0;
   ThreadPool pool_;  // last: its thread uses what is above

@@ -37,11 +37,18 @@ StageTiming StageClock::timing() const {
   return {name_, mean, percentile(0.5), percentile(0.95), max_ms_, count_};
 }
 
-void BusyTime::add(Clock::time_point begin, Clock::time_point end) {
-  const Clock::time_point from = std::max(begin, until_);
-  if (end <= from) return;
-  seconds_ += std::chrono::duration<double>(end - from).count();
-  until_ = end;
+double BusyTime::seconds() const {
+  auto intervals = intervals_;
+  std::sort(intervals.begin(), intervals.end());
+  Clock::time_point until{};
+  double seconds = 0.0;
+  for (const auto& [begin, end] : intervals) {
+    const Clock::time_point from = std::max(begin, until);
+    if (end <= from) continue;
+    seconds += std::chrono::duration<double>(end - from).count();
+    until = end;
+  }
+  return seconds;
 }
 
 }  // namespace parkade

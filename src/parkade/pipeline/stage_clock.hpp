@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace parkade {
@@ -44,17 +45,19 @@ inline double millisecondsBetween(std::chrono::steady_clock::time_point begin,
   return std::chrono::duration<double, std::milli>(end - begin).count();
 }
 
-/// Wall time during which at least one of several stages was at work. Intervals are given in the
-/// order of their begins.
+/// Wall time during which at least one of several stages was at work. Intervals may overlap and
+/// come in any order.
 class BusyTime {
  public:
   using Clock = std::chrono::steady_clock;
-  void add(Clock::time_point begin, Clock::time_point end);
-  [[nodiscard]] double seconds() const { return seconds_; }
+  void add(Clock::time_point begin, Clock::time_point end) { intervals_.emplace_back(begin, end); }
+  void add(const BusyTime& other) {
+    intervals_.insert(intervals_.end(), other.intervals_.begin(), other.intervals_.end());
+  }
+  [[nodiscard]] double seconds() const;
 
  private:
-  Clock::time_point until_{};
-  double seconds_ = 0.0;
+  std::vector<std::pair<Clock::time_point, Clock::time_point>> intervals_;
 };
 
 }  // namespace parkade
