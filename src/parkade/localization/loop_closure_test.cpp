@@ -79,5 +79,43 @@ TEST(LoopClosure, OtherAisleAndTooUncertainPosesAreRefused) {
   EXPECT_THAT(r.reason, ::testing::HasSubstr("uncertain by 3.0 m"));
 }
 
+// Rows of slots and arrows that all say "straight" look alike four metres on, and markers that the
+// submap never read have no say in it.
+TEST(PlaceDecision, OnlyNamesThatWereReadTellAPlace) {
+  SemanticFrame frame;
+  Submap submap;
+  const auto put = [&](SemanticClass c, double x, const std::string& seen,
+                       const std::string& read) {
+    ObjectObservation object;
+    object.semantic_class = c;
+    object.position = {x, 2.0, 0.0};
+    object.text = seen;
+    frame.objects.push_back(object);
+    PointFeature point;
+    point.p = {x, 2.0};
+    point.covariance = 1e-4 * Eigen::Matrix2d::Identity();
+    point.semantic_class = c;
+    point.text = read;
+    point.count = 2;
+    submap.addPoint(point);
+  };
+  for (int k = 0; k < 8; ++k) put(SemanticClass::kArrow, 3.0 * k, "straight", "straight");
+  for (int k = 0; k < 4; ++k)
+    put(SemanticClass::kZoneMarker, 3.0 * k, "B1" + std::to_string(k), "");
+  PlaceRules rules;
+  rules.wrong_texts = 0.25;
+  rules.enough_texts = 4;
+  EXPECT_FALSE(textsSuffice(frame, submap, {}, rules));
+  EXPECT_FALSE(textsContradict(frame, submap, {}, rules));
+  for (int k = 4; k < 6; ++k) put(SemanticClass::kZoneMarker, 3.0 * k, "B1", "C7");
+  EXPECT_TRUE(textsContradict(frame, submap, {}, rules));
+  frame.objects.clear();
+  for (int k = 6; k < 10; ++k) {
+    const std::string text = "B1" + std::to_string(k);
+    put(SemanticClass::kZoneMarker, 3.0 * k, text, text);
+  }
+  EXPECT_TRUE(textsSuffice(frame, submap, {}, rules));
+}
+
 }  // namespace
 }  // namespace parkade

@@ -12,28 +12,45 @@
 namespace parkade {
 namespace {
 
-// Of the frame's texts that stand where the submap has a marker of that class, those that differ.
-struct Texts {
+// Of the frame's texts that stand where the submap has one on a landmark of that class, those that
+// differ.
+struct Comparison {
   int compared = 0;
   int wrong = 0;
-  [[nodiscard]] bool contradict(const PlaceRules& rules) const {
+  [[nodiscard]] bool contradicts(const PlaceRules& rules) const {
     return wrong > rules.wrong_texts * compared;
   }
+};
+struct Texts {
+  Comparison names;    // of zone markers and guide signs
+  Comparison repeats;  // of arrows and limits: they say the same all over a garage
+  [[nodiscard]] bool contradict(const PlaceRules& rules) const {
+    return names.contradicts(rules) || repeats.contradicts(rules);
+  }
   [[nodiscard]] bool suffice(const PlaceRules& rules) const {
-    return rules.enough_texts > 0 && compared - wrong >= rules.enough_texts;
+    return rules.enough_texts > 0 && names.compared - names.wrong >= rules.enough_texts;
+  }
+  [[nodiscard]] std::string reason() const {
+    const int compared = names.compared + repeats.compared;
+    if (compared == 1) return "a marker there has another text";
+    return fmt::format("{} of {} markers there have another text", names.wrong + repeats.wrong,
+                       compared);
   }
 };
 Texts compareTexts(const SemanticFrame& frame, const Submap& submap, const SE2& T) {
   Texts texts;
   for (const ObjectObservation& object : frame.objects) {
-    if (object.text.empty() || !isPointLandmark(object.semantic_class)) continue;
+    const SemanticClass c = object.semantic_class;
+    if (object.text.empty() || !isPointLandmark(c)) continue;
     const Eigen::Vector2d q = T * object.position.head<2>();
     constexpr double kThere = 0.5;  // m
-    if (submap.nearestPoint(q, object.semantic_class, "", kThere) == nullptr) continue;
-    ++texts.compared;
-    if (submap.nearestPoint(q, object.semantic_class, object.text, kThere) == nullptr) {
-      ++texts.wrong;
-    }
+    if (submap.nearestPoint(q, c, "", kThere) == nullptr) continue;
+    const PointFeature* same = submap.nearestPoint(q, c, object.text, kThere);
+    if (same != nullptr && same->text.empty()) continue;  // nobody has read that one
+    const bool is_name = c == SemanticClass::kZoneMarker || c == SemanticClass::kGuideSign;
+    Comparison& kind = is_name ? texts.names : texts.repeats;
+    ++kind.compared;
+    kind.wrong += same == nullptr ? 1 : 0;
   }
   return texts;
 }
@@ -111,6 +128,16 @@ bool PlaceScorer::inside(const Eigen::Vector2d& q) const {
   return (q - submap_.low()).minCoeff() > -kMargin && (submap_.high() - q).minCoeff() > -kMargin;
 }
 
+bool textsContradict(const SemanticFrame& frame, const Submap& submap, const SE2& T_map_vehicle,
+                     const PlaceRules& rules) {
+  return compareTexts(frame, submap, T_map_vehicle).contradict(rules);
+}
+
+bool textsSuffice(const SemanticFrame& frame, const Submap& submap, const SE2& T_map_vehicle,
+                  const PlaceRules& rules) {
+  return compareTexts(frame, submap, T_map_vehicle).suffice(rules);
+}
+
 bool samePlace(const SE2& a, const SE2& b, double distance, double angle) {
   return (a.translation() - b.translation()).norm() < distance &&
          std::abs(wrapAngle(a.angle() - b.angle())) < angle;
@@ -143,7 +170,7 @@ LoopResult decidePlace(const SemanticFrame& frame, const Submap& submap,
         rules.landmarks_first ? layOnLandmarks(frame, submap, c.T_map_vehicle) : c.T_map_vehicle;
     const Registration fit = registerFrame(frame, submap, start, registration, viewpoints);
     if (fit.line_matches < registration.min_matches / 2) continue;
-    if (rules.texts_exclude && compareTexts(frame, submap, fit.T_map_vehicle).contradict(rules)) {
+    if (rules.texts_exclude && textsContradict(frame, submap, fit.T_map_vehicle, rules)) {
       continue;
     }
     const double score = fine.at(fit.T_map_vehicle);
@@ -163,9 +190,7 @@ LoopResult decidePlace(const SemanticFrame& frame, const Submap& submap,
   }
   const Texts texts = compareTexts(frame, submap, result.registration.T_map_vehicle);
   if (texts.contradict(rules)) {
-    result.reason = texts.compared == 1 ? "a marker there has another text"
-                                        : fmt::format("{} of {} markers there have another text",
-                                                      texts.wrong, texts.compared);
+    result.reason = texts.reason();
   } else if (result.score < (texts.suffice(rules) ? rules.least_fit_by_texts : rules.least_fit)) {
     result.reason = fmt::format("{:.0f} % fit", 100.0 * result.score);
   } else if (result.second > rules.ambiguity * result.score) {

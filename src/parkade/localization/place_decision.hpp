@@ -66,6 +66,15 @@ struct PlaceRules {
   bool landmarks_first = false;  ///< they are laid on one another before lines are
 };
 
+/// Whether texts refuse a place: where landmarks of both stand together, more than wrong_texts of
+/// what zone markers and guide signs say differs, or of what arrows and limits do.
+bool textsContradict(const SemanticFrame& frame, const Submap& submap, const SE2& T_map_vehicle,
+                     const PlaceRules& rules);
+/// Whether enough_texts of zone markers and guide signs agree; arrows and limits say the same all
+/// over a garage.
+bool textsSuffice(const SemanticFrame& frame, const Submap& submap, const SE2& T_map_vehicle,
+                  const PlaceRules& rules);
+
 /// Registers the best candidates of each place and takes the one that fits best; refuses it where
 /// another place fits as well, or where markers bear other texts.
 LoopResult decidePlace(const SemanticFrame& frame, const Submap& submap,

@@ -18,14 +18,16 @@ Eigen::Matrix3d sharedNoise(double sigma_m, double sigma_deg) {
 
 Eigen::Matrix3d withSharedNoise(const Eigen::Matrix3d& information, const Eigen::Matrix3d& shared) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information);
-  Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
   constexpr double kLeast = 1e-6;
-  for (int k = 0; k < 3; ++k) {
-    if (eigen.eigenvalues()[k] <= kLeast) continue;
-    const Eigen::Vector3d u = eigen.eigenvectors().col(k);
-    result += u * u.transpose() / (1.0 / eigen.eigenvalues()[k] + u.dot(shared * u));
-  }
-  return result;
+  // Eigenvalues come in ascending order: the observable directions are the last ones.
+  Eigen::Index unknown = 0;
+  while (unknown < 3 && eigen.eigenvalues()[unknown] <= kLeast) ++unknown;
+  const Eigen::Index known = 3 - unknown;
+  if (known == 0) return Eigen::Matrix3d::Zero();
+  const Eigen::MatrixXd U = eigen.eigenvectors().rightCols(known);
+  Eigen::MatrixXd covariance = U.transpose() * shared * U;
+  covariance.diagonal() += eigen.eigenvalues().tail(known).cwiseInverse();
+  return U * covariance.inverse() * U.transpose();
 }
 
 double largestSigma(const Eigen::Matrix2d& covariance) {
