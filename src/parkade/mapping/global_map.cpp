@@ -18,6 +18,7 @@ struct PackedPicture {
   std::int64_t anchor = 0;
   SE2 T_anchor_vehicle;
   TimeNs t_ns = 0;
+  bool new_view = true;
   BevGeometry geometry;
   std::vector<std::uint8_t> packed;  // zstd
   std::vector<PackedLabels::Box> moving;
@@ -89,7 +90,8 @@ struct GlobalMap::Impl {
   explicit Impl(const GlobalMapOptions& o) : options(o), kernel(o.evidence), grid(o.resolution_m) {}
 
   void enter(LayeredGrid& target, const PackedLabels& labels, const SE2& T_map_vehicle,
-             double since_last_s);
+             bool new_view, double since_last_s);
+  [[nodiscard]] bool movedFrom(const std::optional<SE2>& before, const SE2& T_map_vehicle) const;
   void rebuildSome(std::size_t count);
   [[nodiscard]] const SE2& anchorOf(const std::unordered_map<std::int64_t, SE2>& poses,
                                     std::int64_t anchor) const;
@@ -105,11 +107,19 @@ struct GlobalMap::Impl {
   std::unordered_map<std::int64_t, SE2> next_poses;
   std::size_t next_picture = 0;
   std::optional<SE2> last_pose;  // in the map, of the last picture entered
+  std::optional<SE2> last_view;  // and of the last that entered all layers
   TimeNs last_t_ns = 0;
 };
 
+bool GlobalMap::Impl::movedFrom(const std::optional<SE2>& before, const SE2& T_map_vehicle) const {
+  if (!before) return true;
+  const SE2 step = before->inverse() * T_map_vehicle;
+  return step.translation().norm() >= options.distance_m ||
+         std::abs(step.angle()) >= options.rotation_deg * kDegree;
+}
+
 void GlobalMap::Impl::enter(LayeredGrid& target, const PackedLabels& labels,
-                            const SE2& T_map_vehicle, double since_last_s) {
+                            const SE2& T_map_vehicle, bool new_view, double since_last_s) {
   if (since_last_s > 0.0 && !target.tiles(GridLayer::kDynamic).empty()) {
     target.fade(
         GridLayer::kDynamic,
@@ -126,7 +136,7 @@ void GlobalMap::Impl::enter(LayeredGrid& target, const PackedLabels& labels,
                      [&](int i, int j, SemanticClass c, const EvidenceSteps& steps,
                          const Eigen::Vector2d& p_level) {
                        updateLayers(
-                           labels, c, steps, p_level,
+                           labels, c, steps, p_level, new_view,
                            [&](GridLayer l) -> GridCell& {
                              return cursors[static_cast<std::size_t>(l)]->touch(i, j);
                            },
@@ -149,7 +159,8 @@ void GlobalMap::Impl::rebuildSome(std::size_t count) {
         next_picture == 0 ? 0.0 : toSeconds(picture.t_ns - pictures[next_picture - 1].t_ns);
     // Anchors made since the rebuild began keep the newest pose.
     const auto it = next_poses.try_emplace(picture.anchor, anchorOf(anchors, picture.anchor)).first;
-    enter(*next_grid, expand(picture), it->second * picture.T_anchor_vehicle, since);
+    enter(*next_grid, expand(picture), it->second * picture.T_anchor_vehicle, picture.new_view,
+          since);
   }
   if (next_picture < pictures.size()) return;
   // Tiles that vanished must not come back from an older file: the new grid is dirty throughout.
@@ -165,28 +176,27 @@ GlobalMap::GlobalMap(GlobalMap&&) noexcept = default;
 GlobalMap& GlobalMap::operator=(GlobalMap&&) noexcept = default;
 
 bool GlobalMap::update(const PackedLabels& labels, TimeNs t_ns, std::int64_t anchor,
-                       const SE2& T_anchor_vehicle) {
+                       const SE2& T_anchor_vehicle, bool new_view) {
   Impl& m = *impl_;
   m.rebuildSome(static_cast<std::size_t>(m.options.rebuild_per_frame));
   const SE2 T_map_vehicle = m.anchorOf(m.anchors, anchor) * T_anchor_vehicle;
   double since = 0.0;
   if (m.last_pose) {
     since = toSeconds(t_ns - m.last_t_ns);
-    const SE2 step = m.last_pose->inverse() * T_map_vehicle;
-    if (step.translation().norm() < m.options.distance_m &&
-        std::abs(step.angle()) < m.options.rotation_deg * kDegree && since < m.options.interval_s) {
-      return false;
-    }
+    if (!m.movedFrom(m.last_pose, T_map_vehicle) && since < m.options.interval_s) return false;
   }
   PackedPicture picture = compress(labels);
   picture.anchor = anchor;
   picture.T_anchor_vehicle = T_anchor_vehicle;
   picture.t_ns = t_ns;
+  // One that creeps sees new ground as well.
+  picture.new_view = new_view || m.movedFrom(m.last_view, T_map_vehicle);
+  if (picture.new_view) m.last_view = T_map_vehicle;
   m.pictures.push_back(std::move(picture));
   // The grid in use keeps the pose that its other pictures of this anchor have.
   const SE2& T_map_anchor =
       m.entered.try_emplace(anchor, m.anchorOf(m.anchors, anchor)).first->second;
-  m.enter(m.grid, labels, T_map_anchor * T_anchor_vehicle, since);
+  m.enter(m.grid, labels, T_map_anchor * T_anchor_vehicle, m.pictures.back().new_view, since);
   m.last_pose = T_map_vehicle;
   m.last_t_ns = t_ns;
   return true;

@@ -46,9 +46,11 @@ class GlobalMap {
   GlobalMap& operator=(GlobalMap&&) noexcept;
 
   /// Enters a picture, where the car has moved or waited enough since the last; true if so.
-  /// Goes on with a rebuild that is under way.
+  /// new_view: false where the car stands as in the frame before: unless it has moved enough since
+  /// a picture that entered all layers, it enters layers 2 and 5 alone. Goes on with a rebuild that
+  /// is under way.
   bool update(const PackedLabels& labels, TimeNs t_ns, std::int64_t anchor,
-              const SE2& T_anchor_vehicle);
+              const SE2& T_anchor_vehicle, bool new_view = true);
 
   /// The pose of an anchor in the map, new or corrected. A correction that moves the anchor or its
   /// pictures' edges by less than a cell is kept for later; others start a rebuild.

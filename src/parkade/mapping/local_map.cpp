@@ -58,7 +58,8 @@ void LocalMap::fadeDynamic(TimeNs t_ns) {
   }
 }
 
-void LocalMap::update(const PackedLabels& labels, TimeNs t_ns, const SE2& T_map_vehicle) {
+void LocalMap::update(const PackedLabels& labels, TimeNs t_ns, const SE2& T_map_vehicle,
+                      bool new_view) {
   const Eigen::Vector2d middle = (T_map_vehicle * labels.geometry.center) / resolution_ -
                                  Eigen::Vector2d::Constant(0.5 * cells_);
   moveTo({static_cast<int>(std::floor(middle.x())), static_cast<int>(std::floor(middle.y()))});
@@ -71,7 +72,7 @@ void LocalMap::update(const PackedLabels& labels, TimeNs t_ns, const SE2& T_map_
                         if (!contains({i, j})) return;
                         const std::size_t at = indexOf(i, j);
                         updateLayers(
-                            labels, c, steps, p_level,
+                            labels, c, steps, p_level, new_view,
                             [&](GridLayer l) -> GridCell& { return layer(l)[at]; },
                             [&] { return layer(GridLayer::kDynamic)[at].known(); });
                       });

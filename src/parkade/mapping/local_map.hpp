@@ -30,8 +30,10 @@ class LocalMap {
   explicit LocalMap(const LocalMapOptions& options);
 
   /// Enters one frame set. T_map_vehicle is the levelled vehicle in any frame that jumps little:
-  /// odom, best.
-  void update(const PackedLabels& labels, TimeNs t_ns, const SE2& T_map_vehicle);
+  /// odom, best. new_view: false where the vehicle stands as in the frame before: layers 2 and 5
+  /// alone.
+  void update(const PackedLabels& labels, TimeNs t_ns, const SE2& T_map_vehicle,
+              bool new_view = true);
 
   [[nodiscard]] int cells() const { return cells_; }  ///< along a side
   [[nodiscard]] double resolution() const { return resolution_; }

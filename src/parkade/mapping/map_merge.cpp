@@ -9,8 +9,12 @@
 #include <optional>
 #include <vector>
 
+#include "parkade/geometry/planar.hpp"
 #include "parkade/geometry/se2.hpp"
+#include "parkade/mapping/frame_evidence.hpp"
 #include "parkade/mapping/map_check.hpp"
+#include "parkade/mapping/objects/object_registry.hpp"
+#include "parkade/mapping/slots/slot_registry.hpp"
 
 namespace parkade {
 namespace {
@@ -45,8 +49,9 @@ double shareOf(double sigma, double other) {
   return own / (own + 1.0 / std::pow(std::max(kLeast, other), 2));
 }
 
-double jointSigma(double a, double b) {
-  return a > 0.0 && b > 0.0 ? 1.0 / std::hypot(1.0 / a, 1.0 / b) : std::max(a, b);
+// floor: what no number of looks is better than, as the registries tell.
+double jointSigma(double a, double b, double floor) {
+  return a > 0.0 && b > 0.0 ? std::max(floor, 1.0 / std::hypot(1.0 / a, 1.0 / b)) : std::max(a, b);
 }
 
 void takeText(const std::string& later, bool prevails, std::string& saved) {
@@ -63,7 +68,8 @@ void mergeSlot(const MapSlot& later, MapSlot& saved) {
     for (std::size_t i = 0; i < 4; ++i) {
       saved.corners[i] += share * (later.corners[i] - saved.corners[i]);
     }
-    saved.corner_sigma = jointSigma(later.corner_sigma, saved.corner_sigma);
+    saved.corner_sigma =
+        jointSigma(later.corner_sigma, saved.corner_sigma, SlotRegistryOptions().corner_floor_m);
   }
   const bool prevails = later.observations > saved.observations;
   takeText(later.number, prevails, saved.number);
@@ -144,7 +150,8 @@ void mergeObject(const MapObject& later, MapObject& saved) {
   } else if (hasHeading(later)) {
     saved.heading = wrapAngle(saved.heading + share * wrapAngle(later.heading - saved.heading));
   }
-  saved.position_sigma = jointSigma(later.position_sigma, saved.position_sigma);
+  saved.position_sigma = jointSigma(later.position_sigma, saved.position_sigma,
+                                    ObjectRegistryOptions().position_floor_m);
   takeText(later.text, later.observations > saved.observations, saved.text);
   saved.observations += later.observations;
 }
@@ -170,6 +177,72 @@ void mergeObjects(const ParkingMap& later, ParkingMap& saved, MergeReport& repor
       ++report.objects_new;
     }
   }
+}
+
+// Whether a point lies in an outline of any shape.
+bool isInOutline(const std::vector<Vector2d>& outline, const Vector2d& p) {
+  bool within = false;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Vector2d& a = outline[i];
+    const Vector2d& b = outline[(i + 1) % outline.size()];
+    if ((a.y() > p.y()) == (b.y() > p.y())) continue;
+    const bool is_left = cross(b - a, p - a) > 0.0;
+    if (is_left == (b.y() > a.y())) within = !within;
+  }
+  return within;
+}
+
+// Whether a grid shows bare floor where a painted object would be. bounds: of its road markers.
+bool showsFloorAt(const MapObject& object, const LayeredGrid& grid,
+                  const LayeredGrid::Bounds& bounds) {
+  constexpr double kHalf = 0.25;  // m, of the box that stands for an outline
+  constexpr int kLeastKnown = 20;
+  constexpr double kFloor = 0.9;
+  std::vector<Vector2d> outline = object.outline;
+  if (outline.size() < 3) {
+    const Vector2d p = object.position.head<2>();
+    outline = {p + Vector2d(-kHalf, -kHalf), p + Vector2d(kHalf, -kHalf),
+               p + Vector2d(kHalf, kHalf), p + Vector2d(-kHalf, kHalf)};
+  }
+  Vector2d low = outline.front();
+  Vector2d high = low;
+  for (const Vector2d& p : outline) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  low = low.cwiseMax(grid.centerOf(bounds.min));
+  high = high.cwiseMin(grid.centerOf(bounds.max));
+  if (!(low.x() <= high.x() && low.y() <= high.y())) return false;
+  const Eigen::Vector2i from = grid.cellOf(low);
+  const Eigen::Vector2i to = grid.cellOf(high);
+  int known = 0;
+  int floor = 0;
+  for (int y = from.y(); y <= to.y(); ++y) {
+    for (int x = from.x(); x <= to.x(); ++x) {
+      const GridCell cell = grid.at(GridLayer::kRoadMarkers, {x, y});
+      if (!cell.known() || !isInOutline(outline, grid.centerOf({x, y}))) continue;
+      ++known;
+      floor += cell.believed() == SemanticClass::kFloor ? 1 : 0;
+    }
+  }
+  return known >= kLeastKnown && floor >= kFloor * known;
+}
+
+// Of the first `known` of the saved map's objects, paint that the later drive saw to be gone.
+void dropGone(const ParkingMap& later, std::size_t known, ParkingMap& saved, MergeReport& report) {
+  const auto bounds = later.grid.bounds(GridLayer::kRoadMarkers);
+  if (!bounds) return;
+  const auto is_gone = [&](const MapObject& object) {
+    return roleOf(object.semantic_class) == LayerRole::kRoadMarker &&
+           object.semantic_class != SemanticClass::kSpeedBump &&
+           std::none_of(later.objects.begin(), later.objects.end(),
+                        [&](const MapObject& told) { return sameObject(told, object); }) &&
+           showsFloorAt(object, later.grid, *bounds);
+  };
+  const auto end = saved.objects.begin() + static_cast<std::ptrdiff_t>(known);
+  const auto gone = std::remove_if(saved.objects.begin(), end, is_gone);
+  report.objects_gone = static_cast<int>(end - gone);
+  saved.objects.erase(gone, end);
 }
 
 void mergeLayers(const LayeredGrid& later, LayeredGrid& saved) {
@@ -198,7 +271,9 @@ Result<MergeReport> mergeMap(const ParkingMap& later, ParkingMap& saved) {
   if (Status status = checkSameWorld(matches); !status) return status.error();
   MergeReport report;
   mergeSlots(later, matches, saved, report);
+  const std::size_t known = saved.objects.size();
   mergeObjects(later, saved, report);
+  dropGone(later, known, saved, report);
   mergeLayers(later.grid, saved.grid);
   return report;
 }

@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <utility>
+
 #include "parkade/mapping/map_check.hpp"
 #include "parkade/mapping/synthetic_plan.hpp"
 
@@ -120,6 +122,51 @@ TEST(MapMerge, AHeadingThatOneDriveCouldNotTellIsTheOthers) {
       EXPECT_EQ(saved.objects.back().heading, known);
     }
   }
+}
+
+TEST(MapMerge, PaintThatTheLaterDriveSawToBeGoneIsDropped) {
+  const ParkingMap whole = mapOf(makePlan(1, 40.0, 0.3, 4));
+  const auto gone = [&](SemanticClass c, double seen_m, SemanticClass shown, bool told) {
+    ParkingMap saved = whole;
+    ParkingMap later = whole;
+    MapObject object;
+    object.id = 900;
+    object.semantic_class = c;
+    object.position = {10.0, 0.5, 0.0};
+    saved.objects.push_back(object);
+    if (told) later.objects.push_back(object);
+    for (double x = -0.5 * seen_m + 0.025; x < 0.5 * seen_m; x += 0.05) {
+      for (double y = -0.5 * seen_m + 0.025; y < 0.5 * seen_m; y += 0.05) {
+        later.grid.set(GridLayer::kRoadMarkers, later.grid.cellOf({10.0 + x, 0.5 + y}), shown,
+                       2.0F);
+      }
+    }
+    const Result<MergeReport> report = mergeMap(later, saved);
+    EXPECT_TRUE(report.ok());
+    EXPECT_EQ(saved.objects.size() + static_cast<std::size_t>(report->objects_gone),
+              whole.objects.size() + 1);
+    return report->objects_gone;
+  };
+  EXPECT_EQ(gone(SemanticClass::kStopLine, 1.0, SemanticClass::kFloor, false), 1);
+  EXPECT_EQ(gone(SemanticClass::kStopLine, 1.0, SemanticClass::kFloor, true), 0);
+  EXPECT_EQ(gone(SemanticClass::kStopLine, 1.0, SemanticClass::kStopLine, false), 0);
+  EXPECT_EQ(gone(SemanticClass::kStopLine, 0.2, SemanticClass::kFloor, false), 0);  // hardly seen
+  EXPECT_EQ(gone(SemanticClass::kGuideSign, 1.0, SemanticClass::kFloor, false), 0);
+}
+
+TEST(MapMerge, SigmasFallToWhatAllLooksShare) {
+  const ParkingMap whole = mapOf(makePlan(1, 40.0, 0.3, 4));
+  ASSERT_FALSE(whole.objects.empty());
+  const auto merged = [&](double sigma) {
+    ParkingMap saved = whole;
+    saved.slots[0].corner_sigma = saved.objects[0].position_sigma = sigma;
+    const ParkingMap later = saved;
+    EXPECT_TRUE(mergeMap(later, saved).ok());
+    return std::pair(saved.slots[0].corner_sigma, saved.objects[0].position_sigma);
+  };
+  EXPECT_NEAR(merged(0.5).first, 0.354, 0.001);
+  EXPECT_NEAR(merged(0.5).second, 0.354, 0.001);
+  EXPECT_EQ(merged(0.022), std::pair(0.02, 0.03));
 }
 
 TEST(MapMerge, TextsAreThoseOfMoreObservations) {

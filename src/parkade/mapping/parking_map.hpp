@@ -23,11 +23,13 @@ struct MapSlot {
   /// left; on the middle of the painted lines.
   std::array<Eigen::Vector2d, 4> corners = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(),
                                             Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
-  double corner_sigma = 0.0;  ///< m, standard deviation of the entrance corners, per axis
+  /// m, standard deviation of the entrance corners, per axis; with what all looks share.
+  double corner_sigma = 0.0;
   SlotShape shape = SlotShape::kPerpendicular;
-  std::string number;             ///< painted; read, or told by those of its bay (bay_numbers.hpp)
-  std::string zone;               ///< zone marker nearby, empty where not read
-  double probability_free = 0.5;  ///< at last_seen_ns
+  std::string number;  ///< painted; read, or told by those of its bay (bay_numbers.hpp)
+  std::string zone;    ///< zone marker nearby, empty where not read
+  /// When the map is told, not at last_seen_ns: what was seen then has faded since.
+  double probability_free = 0.5;
   std::int64_t observations = 0;  ///< 0: told by its row (row_completion.hpp)
   TimeNs last_seen_ns = 0;
   /// Middle of the entrance.
@@ -44,7 +46,7 @@ struct MapObject {
   SemanticClass semantic_class = SemanticClass::kUnknown;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   double heading = 0.0;         ///< rad: direction of travel it speaks to, or its face's normal
-  double position_sigma = 0.0;  ///< m, per axis
+  double position_sigma = 0.0;  ///< m, per axis; with what all looks share
   std::string text;             ///< "B12", "10", "straight_left", "EXIT"
   std::vector<Eigen::Vector2d> outline;  ///< on the ground, counter-clockwise; may be empty
   std::int64_t observations = 0;

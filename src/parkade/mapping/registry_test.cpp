@@ -319,6 +319,21 @@ TEST(ObjectRegistry, FindsArrowsPillarsAndMarkersOnce) {
   EXPECT_GT(objects.size(), 20U);
 }
 
+TEST(ObjectRegistry, ManyLooksKnowAPlaceNoBetterThanWhatTheyShare) {
+  ObjectObservation arrow;
+  arrow.semantic_class = SemanticClass::kArrow;
+  arrow.position = {4.0, 0.0, 0.0};
+  arrow.covariance = 4e-4 * Eigen::Matrix3d::Identity();
+  arrow.confidence = 0.9;
+  ObjectRegistry registry({});
+  for (int k = 0; k < 50; ++k) registry.update({arrow}, SE2(), 0.0, 0);
+  const std::vector<MapObject> objects = registry.objects();
+  ASSERT_EQ(objects.size(), 1U);
+  const double floor = ObjectRegistryOptions().position_floor_m;
+  EXPECT_GE(objects[0].position_sigma, floor);
+  EXPECT_LT(objects[0].position_sigma, 1.1 * floor);
+}
+
 TEST(ObjectRegistry, SignsAreToldWhereCamerasPicturesShowThem) {
   ObjectObservation seen;
   seen.semantic_class = SemanticClass::kGuideSign;

@@ -153,14 +153,8 @@ void FusedMapper::Impl::enterMaps(const SemanticFrame& frame,
                                   const std::vector<LevelView>& level_views, const View& view) {
   const SE2 pose = poseOf(view);
   const TimeNs t_ns = view.odometry.t_ns;
-  if (!frame.labels.labels.empty()) {
-    const PackedLabels labels = packLabels(frame);
-    local.update(labels, t_ns, SE2::fromSE3(view.odometry.T_odom_vehicle));
-    global.update(labels, t_ns, open().anchor, between(open().anchor, view));
-  }
-  wall_points.add(frame.raised, open().anchor, between(open().anchor, view));
   // What a car at a standstill sees again and again soon says nothing new for or against what it
-  // knows.
+  // knows, but for cars and people that come and go.
   constexpr double kStandstill = 0.1;  // m
   constexpr int kLooks = 5;
   if (view.travelled - last_judged >= kStandstill) {
@@ -168,11 +162,16 @@ void FusedMapper::Impl::enterMaps(const SemanticFrame& frame,
     looks_here = 0;
   }
   const bool is_new = looks_here++ < kLooks;
-  static const std::vector<LevelView> kNoViews;
-  slots.update(frame.slots, t_ns, pose, open().anchor, is_new);
-  objects.update(frame.objects, pose, filter.anchor(view.anchor).z, open().anchor,
-                 is_new && !frame.labels.labels.empty() ? &frame.labels : nullptr,
-                 is_new ? level_views : kNoViews);
+  const BevLabels* seen = frame.labels.labels.empty() ? nullptr : &frame.labels;
+  if (seen != nullptr) {
+    const PackedLabels labels = packLabels(frame);
+    local.update(labels, t_ns, SE2::fromSE3(view.odometry.T_odom_vehicle), is_new);
+    global.update(labels, t_ns, open().anchor, between(open().anchor, view), is_new);
+  }
+  wall_points.add(frame.raised, open().anchor, between(open().anchor, view));
+  slots.update(frame.slots, t_ns, pose, open().anchor, is_new, seen);
+  objects.update(frame.objects, pose, filter.anchor(view.anchor).z, open().anchor, seen,
+                 level_views, is_new);
 }
 
 std::vector<Eigen::Vector3d> FusedMapper::Impl::wallPlaces() const {
@@ -230,7 +229,8 @@ PoseEstimate FusedMapper::addSemantics(const SemanticFrame& frame,
   m.rig_turn = frame.rig_turn;
   const SubmapOptions& o = m.options.submaps;
   const bool begins = m.stretches.empty() || view.travelled - m.open().begin_m >= o.length_m ||
-                      view.turned - m.turned_at_stretch >= o.rotation_deg * kDegree;
+                      view.turned - m.turned_at_stretch >= o.rotation_deg * kDegree ||
+                      (m.saved && std::exchange(m.saved->gone, false));
   if (begins) m.beginStretch(view);
   const bool registers = view.travelled - m.last_registered >= o.register_distance_m;
   if (registers) {

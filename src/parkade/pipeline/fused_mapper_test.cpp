@@ -217,6 +217,30 @@ TEST(FusedMapper, MapHasEverySlotOnceAndFollowsTheCorrections) {
   EXPECT_TRUE(r.map.grid.bounds().has_value());
 }
 
+TEST(FusedMapper, ALongStandCountsAsAFewLooks) {
+  const PlanObserver observer(makePlan(1, 40.0, 0.5, 6), {});
+  FusedMapper mapper({}, {});
+  Random random(1);
+  for (int k = 0; k < 30; ++k) {
+    PoseEstimate vio;
+    vio.t_ns = 500'000'000LL * (k + 1);
+    vio.health = Health::kTracking;
+    mapper.addOdometry(vio);
+    mapper.addSemantics(observer.observe(vio.t_ns, SE2(0.0, {20.0, 0.0}), random, false), {});
+  }
+  const ParkingMap map = mapper.map("standing");
+  ASSERT_FALSE(map.slots.empty());
+  for (const MapSlot& slot : map.slots) {
+    EXPECT_LE(slot.observations, 5);
+    EXPECT_EQ(slot.last_seen_ns, 15'000'000'000LL);
+  }
+  for (const MapObject& object : map.objects) {
+    // Zone markers are told by views of their own.
+    if (object.semantic_class == SemanticClass::kZoneMarker) continue;
+    EXPECT_LE(object.observations, 5);
+  }
+}
+
 TEST(FusedMapper, SecondsWithoutFeaturesAreSurvived) {
   DriveOptions options;
   options.blind_from = 60.0;

@@ -42,6 +42,7 @@ Surroundings FusedMapper::Impl::surroundings(const View& view) const {
   for (const Stretch& s : stretches) {
     const bool is_open = &s == &stretches.back();
     if (!is_open && view.travelled - s.end_m > options.saved_map.gathered_m) continue;
+    if (s.begin_m < saved->lost_at) continue;  // how it lies to the rest nobody knows
     if (s.submap.frames() == 0) continue;
     gather(s.submap, T_vehicle_world * placeOf(s), all);
     middles.push_back(placeOf(s) * s.submap.middle());
@@ -66,13 +67,27 @@ Surroundings FusedMapper::Impl::surroundings(const View& view) const {
 }
 
 void FusedMapper::Impl::locate(const SemanticFrame& frame, const View& view) {
+  const SavedMapOptions& o = options.saved_map;
   if (located()) {
     registerToSavedMap(frame, view);
-    if (!saved->told) confirmPlace(view);
-    return;
+    if (!saved->told) {
+      confirmPlace(view);
+      return;
+    }
+    // No picture is laid on a map from farther off than searches reach, ever again.
+    const Eigen::Matrix4d P = filter.relativeCovariance(saved->place, view.anchor);
+    if (3.0 * largestSigma(P.topLeftCorner<2, 2>()) > options.loop.max_search_m) {
+      saved->lost_at = view.travelled;
+      saved->gone = true;
+      logInfo("lost in the saved map after {:.0f} m", view.travelled);
+      givePlaceUp("the odometry lost the place");
+      return;
+    }
+    // Beyond the map nothing fits either; but there no search finds another place.
+    if (view.travelled - saved->confirmed_at <= o.give_up_m) return;
   }
-  if (view.travelled < options.saved_map.least_m ||
-      view.travelled - saved->last_search < options.saved_map.every_m) {
+  if (view.travelled - saved->lost_at < o.least_m ||
+      view.travelled - saved->last_search < o.every_m) {
     return;
   }
   saved->last_search = view.travelled;
@@ -93,9 +108,22 @@ void FusedMapper::Impl::searchSavedMap(const View& view) {
   // A second search, on what is partly new, has to say the same.
   const std::optional<SE2> before = std::exchange(saved->T_map_world, T_map_world);
   if (!before) return;
-  if (samePlace(T_map_vehicle, *before * poseOf(view), o.agree_m, o.agree_deg * kDegree)) {
-    settleInSavedMap(found.registration, view);
+  const double agree = o.agree_deg * kDegree;
+  if (!samePlace(T_map_vehicle, *before * poseOf(view), o.agree_m, agree)) return;
+  if (located()) {  // by a place told before
+    if (samePlace(T_map_vehicle, between(saved->place, view), o.agree_m, agree)) return;
+    logInfo("another place in the saved map after {:.0f} m", view.travelled);
+    givePlaceUp("it was another place");
   }
+  settleInSavedMap(found.registration, view);
+}
+
+void FusedMapper::Impl::givePlaceUp(const std::string& reason) {
+  filter.removeAnchor(saved->place);
+  saved->place = -1;
+  saved->told = false;
+  saved->T_map_world.reset();
+  saved->reason = reason;
 }
 
 void FusedMapper::Impl::rebase(const SE2& T_new_world, double dz) {
@@ -123,7 +151,7 @@ void FusedMapper::Impl::settleInSavedMap(const Registration& fit, const View& vi
   constexpr double kNearestPlace = 0.1;  // m
   filter.updateHeight(saved->place, z, kNearestPlace, options.submaps.gate_probability,
                       view.anchor);
-  saved->found_at = view.travelled;
+  saved->found_at = saved->confirmed_at = view.travelled;
   corrected = true;
 }
 
@@ -135,10 +163,7 @@ void FusedMapper::Impl::confirmPlace(const View& view) {
     saved->told = true;
     logInfo("found in the saved map after {:.0f} m", view.travelled);
   } else if (view.travelled - saved->found_at > o.give_up_m) {
-    filter.removeAnchor(saved->place);
-    saved->place = -1;
-    saved->T_map_world.reset();
-    saved->reason = "no frame confirms the place that was found";
+    givePlaceUp("no frame confirms the place that was found");
   }
 }
 
@@ -164,6 +189,8 @@ void FusedMapper::Impl::registerToSavedMap(const SemanticFrame& frame, const Vie
     return;
   }
   corrected = true;
+  saved->confirmed_at = view.travelled;
+  saved->T_map_world.reset();  // nothing else is looked for
   ++statistics.map_accepted;
 }
 

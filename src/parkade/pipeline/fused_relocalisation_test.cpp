@@ -21,14 +21,25 @@ struct Localised {
   double found_m = -1.0;  // way to the first of them
   double worst = 0.0;     // of them, m
   double worst_yaw = 0.0;
-  double height_sigma = 0.0;  // m, the largest told
-  double nees = 0.0;          // mean, place in the plane
+  double height_sigma = 0.0;     // m, the largest told
+  double nees = 0.0;             // mean, place in the plane
+  double last_off = 0.0;         // m, of the last pose told
+  double silent_after_m = -1.0;  // the last way after a mishap where no place was told
   ParkingMap map;
   Trajectory final_poses;
 };
 
+// What goes wrong with the odometry on the way: a step that it does not know of, or says that it
+// may have missed.
+struct Mishap {
+  double at = 1e9;  // m, way travelled
+  SE2 missed;
+  bool told = false;
+};
+
 // Drives through a plan with an odometry that drifts, in a map of it that lies at T_map_plan.
-Localised drive(const Plan& plan, const ParkingMap& saved, const SE2& T_map_plan, double length) {
+Localised drive(const Plan& plan, const ParkingMap& saved, const SE2& T_map_plan, double length,
+                const Mishap& mishap = {}) {
   const PlanObserver observer(plan, usualNoise());
   FusedMapperOptions options;
   options.odometry.translation = 0.008;
@@ -48,14 +59,24 @@ Localised drive(const Plan& plan, const ParkingMap& saved, const SE2& T_map_plan
                                       d.z() + 2e-5 + 1e-4 * random.normal()});
       way += kStep;
     }
+    const bool mishap_now = way >= mishap.at && way < mishap.at + kStep;
+    if (mishap_now) odometry = odometry * mishap.missed.inverse();
     PoseEstimate vio;
     vio.t_ns = 100'000'000LL * static_cast<TimeNs>(k + 1);
     vio.T_odom_vehicle = odometry.toSE3();
     vio.health = Health::kTracking;
+    if (way >= mishap.at && mishap.told) {
+      vio.covariance.topLeftCorner<2, 2>() = 9.0 * Eigen::Matrix2d::Identity();
+    }
     mapper.addOdometry(vio);
     const PoseEstimate fused =
         mapper.addSemantics(observer.observe(vio.t_ns, poses[k], random, false), {});
-    if (fused.health == Health::kInitialising) continue;
+    if (fused.health == Health::kInitialising) {
+      result.silent_after_m = way >= mishap.at ? way : result.silent_after_m;
+      continue;
+    }
+    result.last_off =
+        (SE2::fromSE3(fused.T_odom_vehicle).inverse() * T_map_plan * poses[k]).translation().norm();
     if (result.poses++ == 0) result.found_m = way;
     const SE2 off = SE2::fromSE3(fused.T_odom_vehicle).inverse() * T_map_plan * poses[k];
     result.worst = std::max(result.worst, off.translation().norm());
@@ -97,6 +118,24 @@ TEST(FusedRelocalisation, FindsItselfInASavedMapAndStaysThere) {
   const SE2 start = T_map_plan * testing::blockDrive(60.0, 1, 0.25).front();
   const SE2 first = SE2::fromSE3(later.final_poses.front().T_world_body);
   EXPECT_LT((first.translation() - start.translation()).norm(), 0.08);
+}
+
+// Both by 6 m aside: farther than any registration searches.
+TEST(FusedRelocalisation, FindsItsPlaceAgainThatTheOdometryLost) {
+  const Plan plan = makePlan(2, 60.0, 0.4, 12);
+  const SE2 T_map_plan(0.7, {-20.0, 11.0});
+  for (const bool told : {true, false}) {
+    const Mishap mishap{60.0, SE2(0.3, {1.0, 6.0}), told};
+    const Localised later =
+        drive(plan, testing::mapOf(plan, T_map_plan), T_map_plan, 160.0, mishap);
+    std::printf("told %d: silent until %.1f m, off by %.3f m at the end\n", told,
+                later.silent_after_m, later.last_off);
+    EXPECT_LT(later.last_off, 0.08) << told;
+    EXPECT_LT(later.silent_after_m, 110.0) << told;
+    if (told) {
+      EXPECT_GT(later.silent_after_m, 60.0);
+    }
+  }
 }
 
 TEST(FusedRelocalisation, AnotherGarageIsNeverTakenForTheMap) {

@@ -14,6 +14,15 @@ namespace {
 
 constexpr double kGate = 16.27;  // 99.9 % of chi-square, 3 degrees
 
+bool isSignClass(SemanticClass c) {
+  return c == SemanticClass::kGuideSign || c == SemanticClass::kSpeedLimitSign;
+}
+
+// Followed over many pictures before it is told.
+bool isFollowed(SemanticClass c) {
+  return c == SemanticClass::kZoneMarker || isSignClass(c);
+}
+
 }  // namespace
 
 bool ObjectRegistry::Track::isUpright() const {
@@ -21,8 +30,7 @@ bool ObjectRegistry::Track::isUpright() const {
 }
 
 bool ObjectRegistry::Track::isSign() const {
-  return semantic_class == SemanticClass::kGuideSign ||
-         semantic_class == SemanticClass::kSpeedLimitSign;
+  return isSignClass(semantic_class);
 }
 
 bool ObjectRegistry::compatible(const Track& track, SemanticClass c, const Eigen::Vector3d& p,
@@ -44,34 +52,46 @@ void ObjectRegistry::fuse(Track& track, const Eigen::Vector3d& p,
   track.covariance = (0.5 * (track.covariance + track.covariance.transpose())).eval();
 }
 
+// The track that an observation is of, of those not used yet; as many as there are where of none.
+std::size_t ObjectRegistry::match(const ObjectObservation& o, double heading,
+                                  const Eigen::Vector3d& p, const Eigen::Matrix3d& covariance,
+                                  const std::vector<bool>& used) const {
+  const double sigma2 = options_.association_sigma_m * options_.association_sigma_m;
+  std::size_t best = tracks_.size();
+  double best_distance = kGate;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (used[i] || !compatible(tracks_[i], o.semantic_class, p, heading, o.sigma_heading > 0.0)) {
+      continue;
+    }
+    const Eigen::Matrix3d S =
+        tracks_[i].covariance + covariance + sigma2 * Eigen::Matrix3d::Identity();
+    const Eigen::Vector3d d = p - tracks_[i].position;
+    const double distance = d.dot(S.llt().solve(d));
+    if (distance >= best_distance) continue;
+    best_distance = distance;
+    best = i;
+  }
+  return best;
+}
+
 void ObjectRegistry::update(const std::vector<ObjectObservation>& observations,
                             const SE2& T_world_vehicle, double z_vehicle, std::int64_t anchor,
-                            const BevLabels* labels, const std::vector<LevelView>& views) {
+                            const BevLabels* labels, const std::vector<LevelView>& views,
+                            bool new_view) {
   way_.add(T_world_vehicle.translation(), anchor);
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   R.topLeftCorner<2, 2>() = T_world_vehicle.rotationMatrix();
   const double floor2 = options_.position_floor_m * options_.position_floor_m;
-  const double sigma2 = options_.association_sigma_m * options_.association_sigma_m;
   std::vector<bool> used(tracks_.size(), false);
   for (const ObjectObservation& o : observations) {
+    if (!new_view && !isFollowed(o.semantic_class)) continue;
     Eigen::Vector3d p;
     p << T_world_vehicle * o.position.head<2>(), o.position.z() + z_vehicle;
     const Eigen::Matrix3d covariance =
         R * o.covariance * R.transpose() + floor2 * Eigen::Matrix3d::Identity();
     const double heading = wrapAngle(o.heading + T_world_vehicle.angle());
     const bool has_heading = o.sigma_heading > 0.0;
-    std::size_t best = tracks_.size();
-    double best_distance = kGate;
-    for (std::size_t i = 0; i < used.size(); ++i) {
-      if (used[i] || !compatible(tracks_[i], o.semantic_class, p, heading, has_heading)) continue;
-      const Eigen::Matrix3d S =
-          tracks_[i].covariance + covariance + sigma2 * Eigen::Matrix3d::Identity();
-      const Eigen::Vector3d d = p - tracks_[i].position;
-      const double distance = d.dot(S.llt().solve(d));
-      if (distance >= best_distance) continue;
-      best_distance = distance;
-      best = i;
-    }
+    const std::size_t best = match(o, heading, p, covariance, used);
     if (best == tracks_.size()) {
       Track track;
       track.id = next_id_++;
@@ -97,6 +117,7 @@ void ObjectRegistry::update(const std::vector<ObjectObservation>& observations,
     }
     ++track.observations;
   }
+  if (!new_view) return;
   if (labels != nullptr) look(*labels, T_world_vehicle, used);
   for (const LevelView& view : views) {
     lookAcross(view, T_world_vehicle);
@@ -109,6 +130,11 @@ void ObjectRegistry::mergeDuplicates() {
     for (std::size_t j = tracks_.size() - 1; j > i; --j) {
       Track& a = tracks_[i];
       const Track& b = tracks_[j];
+      // Most pairs are of two classes or lie far apart, which x tells at once.
+      if (a.semantic_class != b.semantic_class ||
+          std::abs(b.position.x() - a.position.x()) > options_.max_distance_m) {
+        continue;
+      }
       const double heading = std::atan2(b.heading.y(), b.heading.x());
       if (!compatible(a, b.semantic_class, b.position, heading, b.heading.norm() > 0.0)) continue;
       const Eigen::Vector3d d = b.position - a.position;
@@ -158,9 +184,8 @@ double ObjectRegistry::existence(const Track& track) const {
 }
 
 bool ObjectRegistry::exists(const Track& track) const {
-  const bool followed = track.semantic_class == SemanticClass::kZoneMarker || track.isSign();
-  if (track.observations <
-      (followed ? options_.min_marker_observations : options_.min_observations)) {
+  if (track.observations < (isFollowed(track.semantic_class) ? options_.min_marker_observations
+                                                             : options_.min_observations)) {
     return false;
   }
   if (track.semantic_class == SemanticClass::kZoneMarker && isPhantom(track)) return false;
@@ -238,7 +263,9 @@ std::vector<MapObject> ObjectRegistry::objects() const {
     object.position = track.position;
     object.heading =
         track.heading.norm() > 0.0 ? std::atan2(track.heading.y(), track.heading.x()) : 0.0;
-    object.position_sigma = std::sqrt(std::max(0.0, track.covariance.trace() / 3.0));
+    // Looks share the errors of calibration and pose, which many of them do not average out.
+    object.position_sigma = std::hypot(std::sqrt(std::max(0.0, track.covariance.trace() / 3.0)),
+                                       options_.position_floor_m);
     object.text = track.semantic_class == SemanticClass::kZoneMarker ? track.texts.best(format)
                                                                      : track.texts.best();
     object.outline = track.outline;

@@ -59,8 +59,9 @@ struct ObjectRegistryOptions {
             "What an object may lie off beside its covariance: errors of the pose.", 0.0, 2.0);
     v.field("max_distance_m", max_distance_m, "m", "Objects farther apart are never one.", 0.1,
             10.0);
-    v.field("position_floor_m", position_floor_m, "m", "No place is measured better than this.",
-            1e-4, 1.0);
+    v.field("position_floor_m", position_floor_m, "m",
+            "No place is measured better than this, nor told to be by any number of looks.", 1e-4,
+            1.0);
     v.field("min_observations", min_observations, "count", "Objects seen less often are not told.",
             1, 1000);
     v.field("min_marker_observations", min_marker_observations, "count",
@@ -91,16 +92,19 @@ class ObjectRegistry {
 
   /// labels: of the picture that the observations come from. Where given, objects in plain sight
   /// there that were not observed lose evidence, and their places' labels vote on them. views: of
-  /// the same instant; each confirms or refutes the pillars and signs that it looks at.
+  /// the same instant; each confirms or refutes the pillars and signs that it looks at. new_view:
+  /// false where the vehicle stands as in the frame before, which tells zone markers and signs
+  /// alone: their observations rest on views of their own.
   void update(const std::vector<ObjectObservation>& observations, const SE2& T_world_vehicle,
               double z_vehicle, std::int64_t anchor, const BevLabels* labels = nullptr,
-              const std::vector<LevelView>& views = {});
+              const std::vector<LevelView>& views = {}, bool new_view = true);
   /// As SlotRegistry's.
   void moveWithAnchors(const std::function<SE2(std::int64_t)>& correction);
   /// Moves all of them up, m: the world is called otherwise.
   void raise(double dz);
   /// Those that exist by what plain sight shows, none on another of its class; ordered by id.
-  /// Without labels, and where there is no outline: those observed often enough.
+  /// Without labels, and where there is no outline: those observed often enough. Sigmas hold the
+  /// errors that all looks share.
   [[nodiscard]] std::vector<MapObject> objects() const;
 
  private:
@@ -121,6 +125,9 @@ class ObjectRegistry {
     [[nodiscard]] bool isUpright() const;
     [[nodiscard]] bool isSign() const;
   };
+  [[nodiscard]] std::size_t match(const ObjectObservation& o, double heading,
+                                  const Eigen::Vector3d& p, const Eigen::Matrix3d& covariance,
+                                  const std::vector<bool>& used) const;
   void look(const BevLabels& labels, const SE2& T_world_vehicle, const std::vector<bool>& observed);
   void lookAcross(const LevelView& view, const SE2& T_world_vehicle);
   void lookUp(const LevelView& view, const SE2& T_world_vehicle, double z_vehicle);

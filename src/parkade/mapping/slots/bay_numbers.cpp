@@ -85,60 +85,96 @@ int findDirection(const std::vector<Bay>& bays,
   return up > down ? 1 : -1;
 }
 
+// Readings, and which of them a neighbour's confirms.
+struct Readings {
+  std::vector<std::optional<Counter>> counters;
+  std::vector<bool> are_sure;
+};
+
+// The number of the first slot of a bay by the reading of its k-th.
+Counter firstBy(const Counter& reading, int direction, std::size_t k) {
+  Counter first = reading;
+  first.value -= direction * static_cast<int>(k);
+  return first;
+}
+
+void findSure(const Bay& bay, int direction, Readings& readings) {
+  for (std::size_t k = 1; k < bay.size(); ++k) {
+    const std::optional<Counter>& a = readings.counters[bay[k - 1]];
+    const std::optional<Counter>& b = readings.counters[bay[k]];
+    if (!a || !b || firstBy(*b, direction, 1) != *a) continue;
+    readings.are_sure[bay[k - 1]] = readings.are_sure[bay[k]] = true;
+  }
+}
+
+// The parts of a bay whose sure readings agree: all of it, or from each run of those that do to the
+// next, without what lies between two.
+std::vector<Bay> partsOf(const Bay& bay, int direction, const Readings& readings) {
+  std::vector<Bay> parts;
+  std::optional<Counter> first;  // of the bay, by the newest sure reading
+  std::size_t begin = 0;         // of the newest part
+  std::size_t last = 0;          // the newest sure reading
+  for (std::size_t k = 0; k < bay.size(); ++k) {
+    if (!readings.are_sure[bay[k]]) continue;
+    const Counter by_this = firstBy(*readings.counters[bay[k]], direction, k);
+    if (first && *first != by_this) {
+      parts.emplace_back(bay.begin() + static_cast<std::ptrdiff_t>(begin),
+                         bay.begin() + static_cast<std::ptrdiff_t>(last + 1));
+      begin = k;
+    }
+    first = by_this;
+    last = k;
+  }
+  parts.emplace_back(bay.begin() + static_cast<std::ptrdiff_t>(begin), bay.end());
+  return parts;
+}
+
 struct Numbering {
-  const Bay* bay = nullptr;
+  const Bay* part = nullptr;
   Counter first;
   double support = 0.0;
 };
 
-// None where the readings of a bay do not agree.
-std::optional<Numbering> numberingOf(const Bay& bay, int direction,
-                                     const std::vector<std::optional<Counter>>& counters,
+// None where the readings of a part of a bay do not agree, or sure ones are outvoted.
+std::optional<Numbering> numberingOf(const Bay& part, int direction, const Readings& readings,
                                      const std::vector<double>& support) {
   constexpr double kClearly = 2.0;
   std::map<Counter, double> votes;
-  for (std::size_t k = 0; k < bay.size(); ++k) {
-    if (!counters[bay[k]]) continue;
-    Counter first = *counters[bay[k]];
-    first.value -= direction * static_cast<int>(k);
-    votes[first] += support[bay[k]];
+  std::optional<Counter> sure;
+  for (std::size_t k = 0; k < part.size(); ++k) {
+    if (!readings.counters[part[k]]) continue;
+    const Counter first = firstBy(*readings.counters[part[k]], direction, k);
+    votes[first] += support[part[k]];
+    if (readings.are_sure[part[k]]) sure = first;
   }
   double all = 0.0;
   Numbering best;
-  best.bay = &bay;
+  best.part = &part;
   for (const auto& [first, vote] : votes) {
     all += vote;
     if (vote <= best.support) continue;
     best.support = vote;
     best.first = first;
   }
-  const int last = best.first.value + direction * (static_cast<int>(bay.size()) - 1);
+  const int last = best.first.value + direction * (static_cast<int>(part.size()) - 1);
   if (votes.empty() || best.support < kClearly * (all - best.support) ||
-      std::min(best.first.value, last) < 1) {
+      std::min(best.first.value, last) < 1 || (sure && *sure != best.first)) {
     return std::nullopt;
   }
   return best;
 }
 
-}  // namespace
-
-void numberBays(std::vector<MapSlot>& slots, const std::vector<double>& support) {
-  std::vector<std::optional<Counter>> counters;
-  for (const MapSlot& slot : slots) counters.push_back(counterOf(slot.number));
-  const std::vector<Bay> bays = findBays(slots);
-  const int direction = findDirection(bays, counters);
-  if (direction == 0) return;
-  std::vector<Numbering> numberings;
-  for (const Bay& bay : bays) {
-    if (const auto numbering = numberingOf(bay, direction, counters, support))
-      numberings.push_back(*numbering);
+// The likeliest first; what a numbering gives to a slot no other may have.
+void giveNumbers(const std::vector<Numbering>& numberings, int direction, const Readings& readings,
+                 std::vector<MapSlot>& slots) {
+  std::map<Counter, std::size_t> sure;  // whose they are
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (readings.are_sure[i]) sure.try_emplace(*readings.counters[i], i);
   }
-  std::stable_sort(numberings.begin(), numberings.end(),
-                   [](const Numbering& a, const Numbering& b) { return a.support > b.support; });
   std::set<Counter> taken;
   std::vector<bool> is_done(slots.size(), false);
   for (const Numbering& numbering : numberings) {
-    std::vector<Counter> numbers(numbering.bay->size(), numbering.first);
+    std::vector<Counter> numbers(numbering.part->size(), numbering.first);
     for (std::size_t k = 0; k < numbers.size(); ++k)
       numbers[k].value += direction * static_cast<int>(k);
     if (std::any_of(numbers.begin(), numbers.end(),
@@ -146,15 +182,45 @@ void numberBays(std::vector<MapSlot>& slots, const std::vector<double>& support)
       continue;
     }
     for (std::size_t k = 0; k < numbers.size(); ++k) {
-      slots[(*numbering.bay)[k]].number = numbers[k].text();
-      is_done[(*numbering.bay)[k]] = true;
+      const std::size_t slot = (*numbering.part)[k];
+      const auto elsewhere = sure.find(numbers[k]);
+      if (elsewhere != sure.end() && elsewhere->second != slot) continue;
+      slots[slot].number = numbers[k].text();
+      is_done[slot] = true;
+      taken.insert(numbers[k]);
     }
-    taken.insert(numbers.begin(), numbers.end());
   }
   // What was read elsewhere and is another slot's by now was misread.
   for (std::size_t i = 0; i < slots.size(); ++i) {
-    if (!is_done[i] && counters[i] && taken.count(*counters[i]) > 0) slots[i].number.clear();
+    if (!is_done[i] && !readings.are_sure[i] && readings.counters[i] &&
+        taken.count(*readings.counters[i]) > 0) {
+      slots[i].number.clear();
+    }
   }
+}
+
+}  // namespace
+
+void numberBays(std::vector<MapSlot>& slots, const std::vector<double>& support) {
+  Readings readings;
+  for (const MapSlot& slot : slots) readings.counters.push_back(counterOf(slot.number));
+  readings.are_sure.assign(slots.size(), false);
+  const std::vector<Bay> bays = findBays(slots);
+  const int direction = findDirection(bays, readings.counters);
+  if (direction == 0) return;
+  std::vector<Bay> parts;
+  for (const Bay& bay : bays) {
+    findSure(bay, direction, readings);
+    for (Bay& part : partsOf(bay, direction, readings)) parts.push_back(std::move(part));
+  }
+  std::vector<Numbering> numberings;
+  for (const Bay& part : parts) {
+    if (const auto numbering = numberingOf(part, direction, readings, support))
+      numberings.push_back(*numbering);
+  }
+  std::stable_sort(numberings.begin(), numberings.end(),
+                   [](const Numbering& a, const Numbering& b) { return a.support > b.support; });
+  giveNumbers(numberings, direction, readings, slots);
 }
 
 }  // namespace parkade::slot_registry

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "parkade/mapping/slots/row_test_support.hpp"
@@ -25,16 +26,29 @@ std::vector<MapSlot> slotsOf(const std::vector<std::string>& numbers) {
   return slots;
 }
 
-std::vector<std::string> numbered(const std::vector<std::string>& numbers,
-                                  std::vector<double> support = {}) {
-  std::vector<MapSlot> slots = slotsOf(numbers);
+// One bay, however long.
+std::vector<MapSlot> longBayOf(const std::vector<std::string>& numbers) {
+  std::vector<MapSlot> slots;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    slots.push_back(Garage::slotAt(0, static_cast<int>(i)));
+    slots.back().number = numbers[i];
+  }
+  return slots;
+}
+
+std::vector<std::string> numberedSlots(std::vector<MapSlot> slots, std::vector<double> support) {
   if (support.empty()) {
-    for (const std::string& number : numbers) support.push_back(number.empty() ? 0.0 : 3.0);
+    for (const MapSlot& slot : slots) support.push_back(slot.number.empty() ? 0.0 : 3.0);
   }
   numberBays(slots, support);
   std::vector<std::string> result;
   for (const MapSlot& slot : slots) result.push_back(slot.number);
   return result;
+}
+
+std::vector<std::string> numbered(const std::vector<std::string>& numbers,
+                                  std::vector<double> support = {}) {
+  return numberedSlots(slotsOf(numbers), std::move(support));
 }
 
 using Numbers = std::vector<std::string>;
@@ -53,6 +67,26 @@ TEST(BayNumbers, WhatIsOutvotedGivesWay) {
   const Numbers read = {"7", "8", "9", "14", "15", "76"};
   EXPECT_EQ(numbered(read, {5, 5, 5, 5, 5, 2}), (Numbers{"7", "8", "9", "14", "15", "16"}));
   EXPECT_EQ(numbered(read, {5, 5, 5, 5, 5, 9}), read);  // it does not by so little
+}
+
+TEST(BayNumbers, ASlotWithoutANumberPartsABay) {
+  const auto numberedBay = [](const Numbers& read) { return numberedSlots(longBayOf(read), {}); };
+  const Numbers reserved = {"1", "2", "3", "4", "5", "6", "", "7", "8"};
+  EXPECT_EQ(numberedBay(reserved), reserved);
+  // Which number is between two parts nobody knows.
+  EXPECT_EQ(numberedBay({"1", "2", "3", "", "5", "", "6", "7", ""}),
+            (Numbers{"1", "2", "3", "", "5", "", "6", "7", "8"}));
+  EXPECT_EQ(numberedBay({"", "2", "3", "76", "5", "6", "", "7", "8", ""}),
+            (Numbers{"1", "2", "3", "4", "5", "6", "", "7", "8", "9"}));
+}
+
+TEST(BayNumbers, ReadingsThatANeighbourConfirmsStay) {
+  // However surely another slot is read.
+  const Numbers read = {"7", "8", "9", "14", "15", "76"};
+  EXPECT_EQ(numbered(read, {5, 5, 5, 5, 5, 50}), read);
+  // Nor does another bay take their numbers.
+  EXPECT_EQ(numbered({"7", "8", "", "9", "10", "", "21", "22", "23"}, {9, 9, 0, 3, 3, 0, 3, 3, 3}),
+            (Numbers{"7", "8", "", "9", "10", "11", "21", "22", "23"}));
 }
 
 TEST(BayNumbers, WithoutADirectionNothingIsTold) {

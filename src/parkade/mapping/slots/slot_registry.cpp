@@ -21,15 +21,15 @@ namespace parkade {
 using slot_registry::areOne;
 using slot_registry::Corners;
 using slot_registry::logOdds;
+using slot_registry::matchTracks;
 using slot_registry::Matrix4;
-using slot_registry::mayBeSame;
 using slot_registry::merged;
 using slot_registry::Seen;
+using slot_registry::showsEntrance;
 using slot_registry::SlotNumber;
 using slot_registry::SlotNumbers;
 using slot_registry::toWorld;
 using slot_registry::Track;
-using slot_registry::Vector4;
 
 struct SlotRegistry::Impl {
   SlotRegistryOptions options;
@@ -41,21 +41,22 @@ struct SlotRegistry::Impl {
   };
   std::vector<Place> way;              // of the vehicle's origin
   std::vector<MapSlot> of_rows;        // that the rows have beside the tracks
+  TimeNs completed_ns = 0;             // when they were told
   std::vector<std::int64_t> replaced;  // tracks in whose places those lie
   SlotNumbers numbers;
 
   explicit Impl(const SlotRegistryOptions& given)
       : options(given), numbers(given.min_number_readings, given.number_confidence) {}
-  // What is left of what was known of a slot's availability: cars come and go.
-  [[nodiscard]] double fade(const Track& track, TimeNs now_ns) const {
-    const double seconds = std::max(0.0, toSeconds(now_ns - track.availability_ns));
+  // What is left of what was known of a slot's availability then: cars come and go.
+  [[nodiscard]] double fade(TimeNs then_ns, TimeNs now_ns) const {
+    const double seconds = std::max(0.0, toSeconds(now_ns - then_ns));
     return std::exp(-seconds / options.change_time_s);
   }
   void judge(Track& track, const SlotObservation& seen, TimeNs t_ns) const;
-  void fuse(Track& track, const Seen& seen, TimeNs t_ns) const;
+  static void fuse(Track& track, const Seen& seen);
   void add(const Seen& seen, TimeNs t_ns, std::int64_t anchor);
-  void countMisses(const SE2& T_world_vehicle, const std::vector<bool>& was_seen,
-                   std::size_t old_count);
+  void countMisses(const SE2& T_world_vehicle, const BevLabels* labels,
+                   const std::vector<bool>& was_seen);
   void forgetOdd();
   void mergeDuplicates();
   [[nodiscard]] std::vector<const Track*> distinct() const;
@@ -68,6 +69,7 @@ struct SlotRegistry::Impl {
                                  const std::vector<Eigen::Vector2d>& driven) const;
   [[nodiscard]] std::vector<MapSlot> seenSlots(TimeNs now_ns,
                                                const std::vector<MapObject>& objects) const;
+  [[nodiscard]] MapSlot ofRow(MapSlot slot, TimeNs now_ns) const;
   [[nodiscard]] bool told(const Track& track) const {
     // Seen rarely while in plain sight: something else.
     return track.observations >= options.min_observations &&
@@ -79,7 +81,7 @@ struct SlotRegistry::Impl {
 void SlotRegistry::Impl::judge(Track& track, const SlotObservation& seen, TimeNs t_ns) const {
   constexpr double kLimit = 5.0;
   constexpr double kAside = 0.05;  // what a view from aside alone is worth
-  const double kept = fade(track, t_ns);
+  const double kept = fade(track.availability_ns, t_ns);
   const double best = std::max(kept * track.best_view, seen.seen_over_entrance);
   const double weight = (seen.seen_over_entrance + kAside) / (best + kAside);
   track.log_odds_free = std::clamp(kept * track.log_odds_free + weight * options.availability_gain *
@@ -87,9 +89,10 @@ void SlotRegistry::Impl::judge(Track& track, const SlotObservation& seen, TimeNs
                                    -kLimit, kLimit);
   track.best_view = best;
   track.availability_ns = t_ns;
+  track.last_seen_ns = t_ns;
 }
 
-void SlotRegistry::Impl::fuse(Track& track, const Seen& seen, TimeNs t_ns) const {
+void SlotRegistry::Impl::fuse(Track& track, const Seen& seen) {
   const Matrix4 S = track.covariance + seen.covariance;
   const Matrix4 K = S.llt().solve(track.covariance).transpose();
   track.entrance += K * (seen.entrance - track.entrance);
@@ -101,8 +104,6 @@ void SlotRegistry::Impl::fuse(Track& track, const Seen& seen, TimeNs t_ns) const
   track.rear_left += share * (seen.rear_left - track.rear_left);
   track.rear_right += share * (seen.rear_right - track.rear_right);
   track.rear_weight += weight;
-  judge(track, *seen.source, t_ns);
-  track.last_seen_ns = t_ns;
   ++track.observations;
   track.confidence += seen.source->confidence;
   track.shapes[static_cast<std::size_t>(seen.source->shape)] += seen.source->confidence;
@@ -120,16 +121,20 @@ void SlotRegistry::Impl::add(const Seen& seen, TimeNs t_ns, std::int64_t anchor)
   tracks.push_back(track);
   Track& added = tracks.back();
   const Matrix4 own = added.covariance;
-  fuse(added, seen, t_ns);
+  fuse(added, seen);
+  judge(added, *seen.source, t_ns);
   added.covariance = own;  // one observation counts once
 }
 
-void SlotRegistry::Impl::countMisses(const SE2& T_world_vehicle, const std::vector<bool>& was_seen,
-                                     std::size_t old_count) {
-  for (std::size_t i = 0; i < old_count; ++i) {
+// Of the tracks that were there before: plain sight is near the car, and where there are labels, in
+// which the ground at the entrance is seen.
+void SlotRegistry::Impl::countMisses(const SE2& T_world_vehicle, const BevLabels* labels,
+                                     const std::vector<bool>& was_seen) {
+  const SE2 T_vehicle_world = T_world_vehicle.inverse();
+  for (std::size_t i = 0; i < was_seen.size(); ++i) {
     constexpr double kPlainSight = 4.0;
-    const Eigen::Vector2d from = T_world_vehicle.inverse() * tracks[i].middle();
-    if (!was_seen[i] && from.norm() < kPlainSight) ++tracks[i].misses;
+    if (was_seen[i] || (T_vehicle_world * tracks[i].middle()).norm() >= kPlainSight) continue;
+    if (labels == nullptr || showsEntrance(*labels, T_vehicle_world, tracks[i])) ++tracks[i].misses;
   }
 }
 
@@ -184,52 +189,38 @@ SlotRegistry::SlotRegistry(SlotRegistry&&) noexcept = default;
 SlotRegistry& SlotRegistry::operator=(SlotRegistry&&) noexcept = default;
 
 void SlotRegistry::update(const std::vector<SlotObservation>& observations, TimeNs t_ns,
-                          const SE2& T_world_vehicle, std::int64_t anchor, bool new_view) {
+                          const SE2& T_world_vehicle, std::int64_t anchor, bool new_view,
+                          const BevLabels* labels) {
   Impl& m = *impl_;
   constexpr double kStep = 0.1;  // m
   const Eigen::Vector2d place = T_world_vehicle.translation();
   if (m.way.empty() || (place - m.way.back().p).norm() >= kStep) m.way.push_back({place, anchor});
-  struct Pair {
-    double distance;
-    std::size_t track;
-    std::size_t seen;
-  };
   std::vector<Seen> all;
   for (const SlotObservation& o : observations) {
-    if (!o.number.empty()) m.numbers.add(o.number, T_world_vehicle * o.number_place, anchor);
+    if (new_view && !o.number.empty()) {
+      m.numbers.add(o.number, T_world_vehicle * o.number_place, anchor);
+    }
     all.push_back(toWorld(o, T_world_vehicle, m.options.corner_floor_m));
   }
-  const double sigma2 = m.options.association_sigma_m * m.options.association_sigma_m;
   // Chi-square of 4 degrees by its normal form; the registry may not see the filter's table.
-  const double gate = chiSquareGate4(m.options.gate_probability);
-  std::vector<Pair> pairs;
+  const std::vector<std::optional<std::size_t>> matches = matchTracks(
+      m.tracks, all, m.options.association_sigma_m, chiSquareGate4(m.options.gate_probability));
+  std::vector<bool> was_seen(m.tracks.size(), false);
   for (std::size_t j = 0; j < all.size(); ++j) {
-    for (std::size_t i = 0; i < m.tracks.size(); ++i) {
-      if (!mayBeSame(m.tracks[i], all[j])) continue;
-      const Matrix4 S = m.tracks[i].covariance + all[j].covariance + sigma2 * Matrix4::Identity();
-      const Vector4 d = all[j].entrance - m.tracks[i].entrance;
-      const double distance = d.dot(S.llt().solve(d));
-      if (distance < gate) pairs.push_back({distance, i, j});
-    }
+    if (!matches[j]) continue;
+    was_seen[*matches[j]] = true;
+    Track& track = m.tracks[*matches[j]];
+    if (new_view) Impl::fuse(track, all[j]);
+    m.judge(track, *all[j].source, t_ns);
   }
-  std::stable_sort(pairs.begin(), pairs.end(),
-                   [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
-  const std::size_t old_count = m.tracks.size();
-  std::vector<bool> track_used(old_count, false);
-  std::vector<bool> seen_used(all.size(), false);
-  for (const Pair& pair : pairs) {
-    if (track_used[pair.track] || seen_used[pair.seen]) continue;
-    track_used[pair.track] = true;
-    seen_used[pair.seen] = true;
-    m.fuse(m.tracks[pair.track], all[pair.seen], t_ns);
-  }
+  // Errors of one view come again, whatever was seen of a slot or was not: cars alone come and go.
+  if (!new_view) return;
   // What lies on a known slot may be that slot seen badly, or the other way round: both are kept
   // until slots() has to choose.
   for (std::size_t j = 0; j < all.size(); ++j) {
-    if (!seen_used[j]) m.add(all[j], t_ns, anchor);
+    if (!matches[j]) m.add(all[j], t_ns, anchor);
   }
-  if (!new_view) return;
-  m.countMisses(T_world_vehicle, track_used, old_count);
+  m.countMisses(T_world_vehicle, labels, was_seen);
   m.forgetOdd();
 }
 
@@ -276,12 +267,22 @@ std::vector<MapSlot> SlotRegistry::Impl::seenSlots(TimeNs now_ns,
     slot.corner_sigma = std::sqrt(std::max(0.0, track->covariance.trace() / 4.0));
     slot.shape = static_cast<SlotShape>(
         std::max_element(track->shapes.begin(), track->shapes.end()) - track->shapes.begin());
-    slot.probability_free = 1.0 / (1.0 + std::exp(-fade(*track, now_ns) * track->log_odds_free));
+    slot.probability_free =
+        1.0 / (1.0 + std::exp(-fade(track->availability_ns, now_ns) * track->log_odds_free));
     slot.observations = track->observations;
     slot.last_seen_ns = track->last_seen_ns;
     if (isPlausible(slot, objects, driven)) seen.push_back(std::move(slot));
   }
   return seen;
+}
+
+// As it is told now: what the layers show of a filling is as old as what was seen of its neighbour.
+MapSlot SlotRegistry::Impl::ofRow(MapSlot slot, TimeNs now_ns) const {
+  const TimeNs then_ns = slot.observations > 0 ? completed_ns : slot.last_seen_ns;
+  if (now_ns <= then_ns) return slot;
+  const double log_odds = std::log(slot.probability_free / (1.0 - slot.probability_free));
+  slot.probability_free = 1.0 / (1.0 + std::exp(-fade(then_ns, now_ns) * log_odds));
+  return slot;
 }
 
 namespace {
@@ -309,6 +310,7 @@ void SlotRegistry::completeRows(TimeNs now_ns, const std::vector<MapObject>& obj
   const std::vector<Eigen::Vector2d> driven = m.drivenWay();
   const std::vector<MapSlot> before = std::exchange(m.of_rows, {});
   m.replaced.clear();
+  m.completed_ns = now_ns;
   const std::vector<MapSlot> seen = m.seenSlots(now_ns, objects);
   RowCompletion rows = parkade::completeRows(seen, objects, grid, m.options.rows);
   m.replaced = std::move(rows.replaced);
@@ -338,12 +340,19 @@ std::vector<MapSlot> SlotRegistry::slots(TimeNs now_ns,
     const auto taken = [&](const MapSlot& other) {
       return overlapShare(slot.corners, other.corners) > impl_->options.duplicate_overlap;
     };
-    if (std::none_of(result.begin(), result.end(), taken)) result.push_back(slot);
+    if (std::none_of(result.begin(), result.end(), taken)) {
+      result.push_back(impl_->ofRow(slot, now_ns));
+    }
   }
   std::sort(result.begin(), result.end(),
             [](const MapSlot& a, const MapSlot& b) { return a.id < b.id; });
   std::vector<std::optional<SlotNumber>> numbers;
   for (MapSlot& slot : result) {
+    // Looks share the errors of calibration and pose: many of them know corners no better than
+    // that.
+    if (slot.observations > 0) {
+      slot.corner_sigma = std::hypot(slot.corner_sigma, impl_->options.corner_floor_m);
+    }
     numbers.push_back(impl_->numbers.within(slot.corners));
     const Corners& c = slot.corners;
     const Eigen::Vector2d centre = 0.25 * (c[0] + c[1] + c[2] + c[3]);

@@ -14,6 +14,7 @@
 #include "parkade/geometry/se2.hpp"
 #include "parkade/mapping/parking_map.hpp"
 #include "parkade/mapping/slots/row_completion.hpp"
+#include "parkade/types/semantic_features.hpp"
 
 namespace parkade {
 
@@ -36,7 +37,8 @@ struct SlotRegistryOptions {
             2.0);
     v.field("gate_probability", gate_probability, "probability",
             "Observations of a slot that are kept, of those that are one.", 0.5, 0.99999);
-    v.field("corner_floor_m", corner_floor_m, "m", "A corner is not measured better than this.",
+    v.field("corner_floor_m", corner_floor_m, "m",
+            "A corner is not measured better than this, nor told to be by any number of looks.",
             1e-4, 1.0);
     v.field("min_observations", min_observations, "count", "Slots seen less often are not told.", 1,
             1000);
@@ -67,9 +69,12 @@ class SlotRegistry {
   SlotRegistry& operator=(SlotRegistry&&) noexcept;
 
   /// Enters what one frame shows. anchor: the pose that new slots hang on. new_view: false where
-  /// the vehicle stands as in the frame before, so that what is not seen was not missed once more.
+  /// the vehicle stands as in the frame before, so that only whether known slots are free is
+  /// learned. labels: of the picture that the observations come from; where given, a slot is missed
+  /// where they show the ground at its entrance.
   void update(const std::vector<SlotObservation>& observations, TimeNs t_ns,
-              const SE2& T_world_vehicle, std::int64_t anchor, bool new_view = true);
+              const SE2& T_world_vehicle, std::int64_t anchor, bool new_view = true,
+              const BevLabels* labels = nullptr);
 
   /// Moves every slot with its anchor, then merges those that turn out to be one.
   /// correction(anchor): T_new_old, in the world.
@@ -82,7 +87,8 @@ class SlotRegistry {
   /// The slots seen often enough that the vehicle did not drive through and that hold no pillar and
   /// none of the objects for who drives (arrows, stop lines, ...), and those of their rows, ordered
   /// by id; zones from the markers.
-  /// Probabilities are as of now_ns: what was seen long ago has faded.
+  /// Probabilities are as of now_ns: what was seen long ago has faded. Sigmas hold the errors that
+  /// all looks share.
   [[nodiscard]] std::vector<MapSlot> slots(TimeNs now_ns,
                                            const std::vector<MapObject>& objects = {}) const;
   [[nodiscard]] int candidates() const;  ///< all, also those not told yet

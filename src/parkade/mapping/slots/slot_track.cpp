@@ -6,8 +6,22 @@
 #include <utility>
 
 #include "parkade/mapping/map_check.hpp"
+#include "parkade/mapping/objects/label_sight.hpp"
 
 namespace parkade::slot_registry {
+namespace {
+
+// Same direction to within 25 degrees and middles nearer than half a width: no neighbour does that.
+bool mayBeSame(const Track& track, const Seen& seen) {
+  const Eigen::Vector2d a = track.entrance.tail<2>() - track.entrance.head<2>();
+  const Eigen::Vector2d b = seen.entrance.tail<2>() - seen.entrance.head<2>();
+  constexpr double kCosine = 0.906;
+  if (a.dot(b) < kCosine * a.norm() * b.norm()) return false;
+  const Eigen::Vector2d middle = 0.5 * (seen.entrance.head<2>() + seen.entrance.tail<2>());
+  return (middle - track.middle()).norm() < 0.45 * std::min(a.norm(), b.norm());
+}
+
+}  // namespace
 
 Seen toWorld(const SlotObservation& o, const SE2& T, double floor) {
   Seen seen;
@@ -24,23 +38,63 @@ Seen toWorld(const SlotObservation& o, const SE2& T, double floor) {
   return seen;
 }
 
-bool mayBeSame(const Track& track, const Seen& seen) {
-  const Eigen::Vector2d a = track.entrance.tail<2>() - track.entrance.head<2>();
-  const Eigen::Vector2d b = seen.entrance.tail<2>() - seen.entrance.head<2>();
-  constexpr double kCosine = 0.906;
-  if (a.dot(b) < kCosine * a.norm() * b.norm()) return false;
-  const Eigen::Vector2d middle = 0.5 * (seen.entrance.head<2>() + seen.entrance.tail<2>());
-  return (middle - track.middle()).norm() < 0.45 * std::min(a.norm(), b.norm());
+std::vector<std::optional<std::size_t>> matchTracks(const std::vector<Track>& tracks,
+                                                    const std::vector<Seen>& all, double sigma,
+                                                    double gate) {
+  struct Pair {
+    double distance;
+    std::size_t track;
+    std::size_t seen;
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t j = 0; j < all.size(); ++j) {
+    for (std::size_t i = 0; i < tracks.size(); ++i) {
+      if (!mayBeSame(tracks[i], all[j])) continue;
+      const Matrix4 S =
+          tracks[i].covariance + all[j].covariance + sigma * sigma * Matrix4::Identity();
+      const Vector4 d = all[j].entrance - tracks[i].entrance;
+      const double distance = d.dot(S.llt().solve(d));
+      if (distance < gate) pairs.push_back({distance, i, j});
+    }
+  }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
+  std::vector<bool> is_used(tracks.size(), false);
+  std::vector<std::optional<std::size_t>> matches(all.size());
+  for (const Pair& pair : pairs) {
+    if (is_used[pair.track] || matches[pair.seen]) continue;
+    is_used[pair.track] = true;
+    matches[pair.seen] = pair.track;
+  }
+  return matches;
+}
+
+bool showsEntrance(const BevLabels& labels, const SE2& T_vehicle_world, const Track& track) {
+  constexpr double kRange = 8.5;  // m
+  constexpr double kHalf = 0.15;  // m, of the square that is looked at
+  constexpr double kMostHidden = 0.2;
+  const LabelSight sight(labels, kRange);
+  const Eigen::Vector2d left = track.entrance.head<2>();
+  const Eigen::Vector2d right = track.entrance.tail<2>();
+  for (const Eigen::Vector2d& p : {left, track.middle(), right}) {
+    const Eigen::Vector2d at = T_vehicle_world * p;
+    const AreaShares shares =
+        sight.of({at + Eigen::Vector2d(-kHalf, -kHalf), at + Eigen::Vector2d(kHalf, -kHalf),
+                  at + Eigen::Vector2d(kHalf, kHalf), at + Eigen::Vector2d(-kHalf, kHalf)},
+                 SemanticClass::kFloor);
+    if (shares.unseen + shares.covered > kMostHidden) return false;
+  }
+  return true;
 }
 
 bool areOne(const Track& a, const Track& b, double duplicate_overlap) {
-  constexpr double kFar = 6.0;   // m
   constexpr double kSame = 0.6;  // m, corners of one entrance
-  if ((a.middle() - b.middle()).norm() > kFar) return false;
-  if (overlapShare(a.corners(), b.corners()) < duplicate_overlap) return false;
+  // Most pairs lie far apart, which x tells at once.
+  if (std::abs(b.entrance[0] - a.entrance[0]) > kSame) return false;
   // Another reading of the place stays one: the registry weighs them.
   const Vector4 d = b.entrance - a.entrance;
-  return d.head<2>().norm() <= kSame && d.tail<2>().norm() <= kSame;
+  if (d.head<2>().norm() > kSame || d.tail<2>().norm() > kSame) return false;
+  return overlapShare(a.corners(), b.corners()) >= duplicate_overlap;
 }
 
 Track merged(Track first, Track second) {

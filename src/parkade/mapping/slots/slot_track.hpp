@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
+#include <vector>
 
 #include "parkade/core/time.hpp"
 #include "parkade/geometry/se2.hpp"
@@ -68,9 +70,15 @@ inline double logOdds(double p) {
 /// floor: m, a corner is not measured better than this.
 Seen toWorld(const SlotObservation& o, const SE2& T, double floor);
 
-/// Same direction to within 25 degrees and middles nearer than half a width: no neighbour does
-/// that.
-bool mayBeSame(const Track& track, const Seen& seen);
+/// The track that each observation is of, at most one of each, the likeliest pairs first; none
+/// where it is of none. sigma: m, of corners beside their covariances. gate: of the squared
+/// Mahalanobis distance.
+std::vector<std::optional<std::size_t>> matchTracks(const std::vector<Track>& tracks,
+                                                    const std::vector<Seen>& all, double sigma,
+                                                    double gate);
+
+/// Whether a picture shows the ground at the slot's entrance, at both corners and between them.
+bool showsEntrance(const BevLabels& labels, const SE2& T_vehicle_world, const Track& track);
 
 /// Whether two tracks have grown together: passes that were drawn apart saw one slot.
 bool areOne(const Track& a, const Track& b, double duplicate_overlap);

@@ -232,8 +232,11 @@ Status exportLanelet2(const ParkingMap& map, const std::string& path) {
                                                    {"ref", slot.number}});
   }
   if (all.size() >= 3) {
+    // Lanelet2's polygons run clockwise and are not closed.
+    std::vector<Eigen::Vector2d> hull = convexHull(all);
+    std::reverse(hull.begin(), hull.end());
     std::vector<int> corners;
-    for (const Eigen::Vector2d& p : convexHull(all)) corners.push_back(osm.node(p));
+    for (const Eigen::Vector2d& p : hull) corners.push_back(osm.node(p));
     osm.way(corners, {{"type", "parking_lot"}, {"area", "yes"}});
   }
   return writeFile(path, osm.text());

@@ -10,7 +10,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "parkade/mapping/map_check.hpp"
 #include "parkade/mapping/map_test_support.hpp"
 #include "parkade/mapping/storage/map_drawing.hpp"
 
@@ -101,6 +104,36 @@ TEST(MapExport, Lanelet2HasASpacePerSlotFromAisleToRear) {
   // The first slot's way starts at the middle of its entrance.
   EXPECT_THAT(osm.substr(0, 400), HasSubstr("<tag k=\"local_x\" v=\"1.2500\"/>"));
   EXPECT_THAT(osm.substr(0, 400), HasSubstr("<tag k=\"local_y\" v=\"3.0000\"/>"));
+}
+
+// Where the nodes of the last way lie, and how they are called.
+std::vector<std::pair<std::string, Eigen::Vector2d>> lastWay(const std::string& osm) {
+  const auto after = [&](const std::string& key, std::size_t from) {
+    const std::size_t at = osm.find(key, from);
+    return at == std::string::npos ? at : at + key.size();
+  };
+  std::vector<std::pair<std::string, Eigen::Vector2d>> nodes;
+  const std::string key = "<nd ref=\"";
+  for (std::size_t at = after(key, osm.rfind("<way ")); at != std::string::npos;
+       at = after(key, at)) {
+    const std::string id = osm.substr(at, osm.find('"', at) - at);
+    const std::size_t node = osm.find("<node id=\"" + id + "\"");
+    nodes.emplace_back(id,
+                       Eigen::Vector2d(std::stod(osm.substr(after("local_x\" v=\"", node), 12)),
+                                       std::stod(osm.substr(after("local_y\" v=\"", node), 12))));
+  }
+  return nodes;
+}
+
+TEST(MapExport, Lanelet2sPolygonRunsClockwiseAndIsOpen) {
+  const std::string path = folder() + "/polygon.osm";
+  ASSERT_TRUE(exportLanelet2(sampleMap(), path));
+  const auto nodes = lastWay(contentOf(path));
+  ASSERT_GE(nodes.size(), 4U);
+  EXPECT_NE(nodes.front().first, nodes.back().first);
+  std::vector<Eigen::Vector2d> corners;
+  for (const auto& [id, p] : nodes) corners.push_back(p);
+  EXPECT_NEAR(signedArea(corners), -75.0, 1e-3);  // six slots of 2.5 x 5 m
 }
 
 TEST(MapExport, UnwritableFolderIsNamed) {
