@@ -85,6 +85,8 @@ void addSpecOptions(CLI::App& command, Arguments& arguments) {
            "Seed of what happens on the drive: stops, people, noise [1]");
   addField(command, arguments, "--garage-seed", "garage_seed", "N",
            "Seed of the garage: layout, parked cars, wear [1]");
+  addField(command, arguments, "--parked-seed", "parked_seed", "N",
+           "Seed of which slots hold which cars [the garage's]");
   addField(command, arguments, "--lux", "lux", "LX", "Mean light on the floor, 1 to 5000");
   addField(command, arguments, "--occupancy", "occupancy", "SHARE",
            "Share of slots with a parked car, 0 to 1");

@@ -105,9 +105,11 @@ class Recorder {
     return {};
   }
 
+  // Named like the picture that it tells of: by the camera's own clock.
   [[nodiscard]] std::string labelPath(std::size_t camera, TimeNs t_ns) const {
-    return joinPath(options_.out, fmt::format("truth/labels/{}/{}.png",
-                                              simulation_->trueRig().cameras[camera].name, t_ns));
+    const RigCamera& told = told_rig_.cameras[camera];
+    return joinPath(options_.out,
+                    fmt::format("truth/labels/{}/{}.png", told.name, t_ns - told.time_offset_ns));
   }
   [[nodiscard]] std::string groundPath(TimeNs t_ns) const {
     return joinPath(options_.out, fmt::format("truth/bev_labels/{}.png", t_ns));

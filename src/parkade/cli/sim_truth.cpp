@@ -56,6 +56,7 @@ Status writeAgents(const sim::Simulation& simulation, const sim::Scene& scene,
 std::string specText(const sim::SimSpec& spec) {
   sim::SimSpec fixed = spec;
   fixed.threads = 1;  // the bytes do not depend on it
+  if (spec.parkedSeed() == spec.garage_seed) fixed.parked_seed = -1;
   std::string text = dumpOptions(asOptions(fixed));
   // As before there were these options: recordings of that time are still the same.
   const auto leave_out = [&text](const std::string& line) {
@@ -64,6 +65,7 @@ std::string specText(const sim::SimSpec& spec) {
     }
   };
   if (spec.one_way == 0.0) leave_out("one_way: 0\n");
+  if (fixed.parked_seed == -1) leave_out("parked_seed: -1\n");
   if (spec.first_zone == "A") leave_out("first_zone: 'A'\n");
   return text;
 }

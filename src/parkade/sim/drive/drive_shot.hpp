@@ -21,10 +21,11 @@ inline std::ostream& operator<<(std::ostream& stream, const Drive& drive) {
   return stream << drive.name;
 }
 
-// Each sees paint of many kinds, pillars, parked and moving cars and people.
+// Each sees paint of many kinds, pillars, parked and moving cars and people. These are many, since
+// they are planned for the whole drive and few of them are near at one time.
 inline constexpr std::array<Drive, 2> kDrives{
-    Drive{"paper", "sim:paper/test2?duration=40", 31.0},
-    Drive{"random", "sim:random?garage_seed=5003&seed=5003&duration=40&cars=4&people=8", 20.0}};
+    Drive{"paper", "sim:paper/test2?duration=40&cars=6&people=16", 31.0},
+    Drive{"random", "sim:random?garage_seed=5003&seed=5003&duration=40&cars=6&people=16", 20.0}};
 
 inline constexpr double kSmall = 0.25;  // the rig's cameras, scaled: 160 x 100
 inline constexpr int kGroundPx = 200;

@@ -20,7 +20,7 @@ std::shared_ptr<const Scene> makeScene(const Simulation& simulation) {
   options.lux = spec.lux;
   options.vehicles = spec.cars;
   options.pedestrians = spec.people;
-  options.seed = spec.garage_seed;
+  options.seed = spec.parkedSeed();
   options.agents_seed = spec.seed;
   EgoInput ego;
   ego.shape = simulation.trueRig().vehicle;
@@ -28,7 +28,9 @@ std::shared_ptr<const Scene> makeScene(const Simulation& simulation) {
     const SE3 pose = simulation.T_world_vehicle(t);
     return Eigen::Vector3d(pose.translation().x(), pose.translation().y(), pose.rotation().yaw());
   };
-  ego.duration = simulation.duration();
+  // What moves is planned for the whole drive: who meets the car does not depend on where the
+  // recording ends.
+  ego.duration = simulation.wholeDuration();
   return std::make_shared<const Scene>(buildScene(simulation.garage(), options, ego));
 }
 

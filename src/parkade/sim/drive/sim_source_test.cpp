@@ -171,6 +171,7 @@ TEST(Simulation, ACutDriveIsTheBeginningOfTheWhole) {
   ASSERT_LT(cut->imu().size(), whole->imu().size());
   EXPECT_EQ(cut->imu().back().accel, whole->imu()[cut->imu().size() - 1].accel);
   EXPECT_EQ(cut->frameTimes().size(), 70U);
+  EXPECT_EQ(cut->wholeDuration(), whole->duration());
 }
 
 TEST(Simulation, TheParkingSlotIsFreeAndTheShareKept) {
@@ -181,6 +182,18 @@ TEST(Simulation, TheParkingSlotIsFreeAndTheShareKept) {
     EXPECT_FALSE(slot.occupied && slot.id == simulation->route().parking_slot_id);
   }
   EXPECT_NEAR(occupied, 0.95 * static_cast<double>(simulation->garage().slots.size()), 0.51);
+}
+
+TEST(Simulation, ALaterDriveMeetsOtherParkedCarsOnTheSameWay) {
+  const auto first = simulate("sim:paper/test1?duration=2");
+  const auto later = simulate("sim:paper/test1?duration=2&parked_seed=5");
+  int moved = 0;
+  for (std::size_t i = 0; i < first->garage().slots.size(); ++i) {
+    moved += first->garage().slots[i].occupied != later->garage().slots[i].occupied ? 1 : 0;
+  }
+  EXPECT_GT(moved, 20);
+  EXPECT_EQ(first->wholeDuration(), later->wholeDuration());
+  EXPECT_EQ(first->imu().back().accel, later->imu().back().accel);
 }
 
 TEST(Simulation, RollingStartBeginsOnTheMove) {

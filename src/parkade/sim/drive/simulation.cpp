@@ -91,6 +91,7 @@ Result<std::shared_ptr<const Simulation>> Simulation::make(const SimSpec& spec) 
   GarageOptions garage_options;
   garage_options.preset = spec.garage;
   garage_options.seed = spec.garage_seed;
+  garage_options.parked_seed = spec.parkedSeed();
   garage_options.occupancy = spec.occupancy;
   garage_options.one_way = spec.one_way;
   garage_options.first_zone = spec.first_zone;
@@ -132,7 +133,7 @@ void Simulation::drive(const SuspensionOptions& suspension) {
       offset_ += 0.1;
     }
   }
-  duration_ = profile_.duration() - offset_;
+  duration_ = wholeDuration();
   if (spec_.duration > 0.0) duration_ = std::min(duration_, spec_.duration);
 }
 

@@ -44,7 +44,9 @@ class Simulation {
   [[nodiscard]] const Rig& toldRig() const { return told_rig_; }
 
   [[nodiscard]] double duration() const { return duration_; }  ///< s
-  [[nodiscard]] double drivenDistance() const;                 ///< m
+  /// s: to the end of the drive, where the recording may be cut short (SimSpec::duration).
+  [[nodiscard]] double wholeDuration() const { return profile_.duration() - offset_; }
+  [[nodiscard]] double drivenDistance() const;  ///< m
   [[nodiscard]] MotionState motionAt(double t) const { return motion_->at(t + offset_); }
   [[nodiscard]] SE3 T_world_vehicle(double t) const { return motion_->pose(t + offset_); }
 

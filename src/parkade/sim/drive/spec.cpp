@@ -22,6 +22,8 @@ void SimSpec::visit(OptionVisitor& v) {
   v.field("seed", seed, "", "Of everything that happens on the drive: stops, people, noise.", 0,
           1e9);
   v.field("garage_seed", garage_seed, "", "Of the garage: layout, parked cars, wear.", 0, 1e9);
+  v.field("parked_seed", parked_seed, "",
+          "Of which slots hold which cars, in the same garage; -1: the garage's seed.", -1, 1e9);
   v.field("lux", lux, "lx", "Mean illuminance of the drivable floor.", 1.0, 5000.0);
   v.field("occupancy", occupancy, "share", "Share of the slots with a parked car.", 0.0, 1.0);
   v.field("one_way", one_way, "share",

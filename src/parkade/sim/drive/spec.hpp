@@ -17,6 +17,7 @@ struct SimSpec {
   std::string route = "test1";
   int seed = 1;
   int garage_seed = 1;
+  int parked_seed = -1;
   double lux = 200.0;
   double occupancy = 0.6;
   double one_way = 0.0;
@@ -38,6 +39,8 @@ struct SimSpec {
 
   void visit(OptionVisitor& v);
 
+  /// That of which slots hold which cars: the garage's, unless it has one of its own.
+  [[nodiscard]] int parkedSeed() const { return parked_seed < 0 ? garage_seed : parked_seed; }
   /// "sim:paper/test1", for messages.
   [[nodiscard]] std::string name() const { return "sim:" + garage + "/" + route; }
 };

@@ -28,6 +28,11 @@ TEST(SimSpec, AGarageAloneHasARoute) {
   EXPECT_EQ(parseSimAddress("sim:random?garage_seed=4")->route, "random");
 }
 
+TEST(SimSpec, ParkedCarsAreTheGaragesUnlessTheyHaveASeedOfTheirOwn) {
+  EXPECT_EQ(parseSimAddress("sim:random?garage_seed=4")->parkedSeed(), 4);
+  EXPECT_EQ(parseSimAddress("sim:random?garage_seed=4&parked_seed=0")->parkedSeed(), 0);
+}
+
 std::string messageOf(const std::string& address) {
   const Result<SimSpec> spec = parseSimAddress(address);
   return spec.ok() ? "no error" : spec.error().message;
@@ -45,6 +50,7 @@ TEST(SimSpec, SaysWhatIsWrongAndWhatIsKnown) {
   EXPECT_NE(messageOf("sim:paper/test1?luxx=3").find("unknown option 'luxx'"), std::string::npos);
   EXPECT_NE(messageOf("sim:paper/test1?lux").find("expected name=value"), std::string::npos);
   EXPECT_NE(messageOf("sim:paper/test1?seed=x").find("expected a whole number"), std::string::npos);
+  EXPECT_NE(messageOf("sim:paper/test1?parked_seed=-2").find("parked_seed"), std::string::npos);
   EXPECT_NE(messageOf("sim:paper/test1?duration=0.1").find("at least 1 s"), std::string::npos);
   EXPECT_NE(messageOf("bag.mcap").find("no simulator address"), std::string::npos);
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/sim/world/agent_motion.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -40,6 +41,18 @@ bool separated(const Eigen::Vector3d& a, const Eigen::Vector2d& half_a, const Ei
          across > half_a.y() + s * half_b.x() + c * half_b.y();
 }
 
+// Bounds of the middles of so many places after one another. Boxes are mostly far from most of a
+// track: one look at its bounds passes a block over.
+constexpr std::size_t kBlockPlaces = 32;
+
+std::vector<Eigen::AlignedBox2d> blockBounds(const AgentTrack& track) {
+  std::vector<Eigen::AlignedBox2d> bounds((track.poses.size() + kBlockPlaces - 1) / kBlockPlaces);
+  for (std::size_t k = 0; k < track.poses.size(); ++k) {
+    bounds[k / kBlockPlaces].extend(track.poses[k].head<2>());
+  }
+  return bounds;
+}
+
 // Where and when a place of the track is too close to a box.
 class BlockedMap {
  public:
@@ -48,18 +61,23 @@ class BlockedMap {
       : places_(static_cast<int>(track.poses.size())),
         times_(static_cast<int>(std::ceil(duration / kFine)) + 1),
         blocked_(static_cast<std::size_t>(places_) * static_cast<std::size_t>(times_), false) {
+    const std::vector<Eigen::AlignedBox2d> bounds = blockBounds(track);
     const double reach = half.norm() + clearance + kReserve;
     for (int i = 0; i < times_; ++i) {
       for (const MovingBox& box : boxes) {
         const Eigen::Vector3d pose = box.pose(i * kFine);
+        const Eigen::Vector2d middle = pose.head<2>();
         const Eigen::Vector2d other(box.half_length, box.half_width);
         const double far = reach + other.norm();
-        for (int k = 0; k < places_; ++k) {
-          const Eigen::Vector3d& mine = track.poses[static_cast<std::size_t>(k)];
-          if ((mine.head<2>() - pose.head<2>()).squaredNorm() > far * far) continue;
-          if (boxDistance(mine, half, pose, other) < clearance + kReserve) {
-            blocked_[static_cast<std::size_t>(i) * static_cast<std::size_t>(places_) +
-                     static_cast<std::size_t>(k)] = true;
+        for (std::size_t b = 0; b < bounds.size(); ++b) {
+          if (bounds[b].squaredExteriorDistance(middle) > far * far) continue;
+          const std::size_t end = std::min((b + 1) * kBlockPlaces, track.poses.size());
+          for (std::size_t k = b * kBlockPlaces; k < end; ++k) {
+            const Eigen::Vector3d& mine = track.poses[k];
+            if ((mine.head<2>() - middle).squaredNorm() > far * far) continue;
+            if (boxDistance(mine, half, pose, other) < clearance + kReserve) {
+              blocked_[static_cast<std::size_t>(i) * static_cast<std::size_t>(places_) + k] = true;
+            }
           }
         }
       }

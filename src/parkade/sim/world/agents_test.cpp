@@ -57,6 +57,49 @@ TEST(PlanSchedule, WaitsForWhatCrosses) {
   EXPECT_GT(schedule->distance(30.0), 25.0);
 }
 
+TEST(PlanSchedule, StopsCloseBehindWhatStandsAnywhereOnTheWay) {
+  for (double ahead = 6.0; ahead < 58.0; ahead += 1.7) {
+    const MovingBox standing{[ahead](double) { return Eigen::Vector3d(ahead, 0.0, 0.0); }, 2.0,
+                             1.0};
+    const auto schedule = planSchedule(straightTrack(60.0), {2.0, 0.9}, {standing}, {}, 30.0);
+    ASSERT_TRUE(schedule) << ahead;
+    // Half of both lengths; the clearance of 0.8 m with its reserve of 0.3 m.
+    const double limit = ahead - 4.0 - 1.1;
+    EXPECT_LE(schedule->distance(30.0), limit + 1e-9);
+    EXPECT_GT(schedule->distance(30.0), limit - 0.5);
+  }
+}
+
+TEST(PlanSchedule, KeepsClearOnAWindingWay) {
+  AgentTrack round;
+  for (double s = 0.0; s < 106.0; s += AgentTrack::kSpacing) {
+    round.poses.emplace_back(10.0 * std::cos(0.1 * s), 10.0 * std::sin(0.1 * s),
+                             0.1 * s + M_PI / 2);
+  }
+  // One crosses the circle twice, one stands in its middle, one drives past outside.
+  const std::vector<MovingBox> boxes = {
+      {[](double t) { return Eigen::Vector3d(0.7 * t - 20.0, 0.5, 0.0); }, 2.3, 0.9},
+      {[](double) { return Eigen::Vector3d(0.0, 0.0, 1.0); }, 2.3, 0.9},
+      {[](double t) { return Eigen::Vector3d(16.0, 30.0 - t, -M_PI / 2); }, 2.3, 0.9}};
+  const Eigen::Vector2d half(0.35, 0.28);
+  const auto schedule = planSchedule(round, half, boxes, {}, 60.0);
+  ASSERT_TRUE(schedule);
+  for (double t = 0.0; t <= 60.0; t += 0.05) {
+    for (const MovingBox& box : boxes) {
+      EXPECT_GE(boxDistance(round.at(schedule->distance(t)), half, box.pose(t),
+                            {box.half_length, box.half_width}),
+                0.8)
+          << "t = " << t;
+    }
+  }
+  // Those that never come near change nothing.
+  const auto alone = planSchedule(round, half, {boxes[0]}, {}, 60.0);
+  ASSERT_TRUE(alone);
+  for (double t = 0.0; t <= 60.0; t += 0.25) {
+    EXPECT_EQ(schedule->distance(t), alone->distance(t));
+  }
+}
+
 TEST(PlanSchedule, FindsNothingWhereThereIsNothing) {
   const MovingBox standing{[](double) { return Eigen::Vector3d(0.0, 0.0, 0.0); }, 2.0, 1.0};
   EXPECT_FALSE(planSchedule(straightTrack(10.0), {2.0, 0.9}, {standing}, {}, 10.0));

@@ -121,10 +121,12 @@ std::shared_ptr<const FloorSurface> buildFloor(const Garage& garage, double wear
   look.dirt = std::clamp(style.dirt * dirt, 0.0, 1.0);
   look.seed = random.fork("look").bits();
   if (style.two_tone) {
+    FloorLook::Zone& aisles = look.zones.emplace_back();
+    aisles.albedo = style.aisle_floor;
     for (const AisleGraph::Edge& edge : garage.aisles.edges) {
       const Eigen::Vector2d a = garage.aisles.nodes[static_cast<std::size_t>(edge.from)];
       const Eigen::Vector2d b = garage.aisles.nodes[static_cast<std::size_t>(edge.to)];
-      look.zones.push_back({strip(a, b, edge.width, 0.5 * edge.width), style.aisle_floor});
+      aisles.outlines.push_back(strip(a, b, edge.width, 0.5 * edge.width));
     }
   }
   std::vector<FloorPaint> paints;

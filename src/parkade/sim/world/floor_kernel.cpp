@@ -138,7 +138,7 @@ void lookAtGround(const GroundTable& table, const float* xs, const float* ys,
     };
     const float coarse = map(kCloudChannel);
     const float dirt = map(kDirtChannel);
-    const float number = 127.0F * map(kZoneChannel);
+    const float number = table.zones_per_value * map(kZoneChannel);
     const float bare =
         (1.0F + 0.42F * table.grain * fine[k] + (0.10F + 0.22F * table.filth) * coarse) *
         (1.0F - dirt);

@@ -26,6 +26,7 @@ struct GroundTable {
   float filth = 0.0F;
   float specular = 0.0F;
   float roughness = 0.0F;
+  float zones_per_value = 1.0F;  ///< of kZoneChannel
   int zones = 0;
   // Colours: the floor's own, then of the zones.
   float red[kMaxZones + 1] = {};

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "parkade/core/random.hpp"
+#include "parkade/sim/texel.hpp"
 #include "parkade/sim/world/coverage.hpp"
 
 namespace parkade::sim {
@@ -129,13 +130,16 @@ FloorMap dirtMap(const Eigen::Vector2d& min, const Eigen::Vector2d& max, const F
   return map;
 }
 
-// Zones are few: their numbers, divided by 127, are the map's values; neighbours are blended.
+// Zones are few: multiples of one value are the map's; neighbours are blended.
 FloorMap zoneMap(const Eigen::Vector2d& min, const Eigen::Vector2d& max, const FloorLook& look) {
   FloorMap map(min, max);
   // All zones but the first would blend through others' colours at their edges; garages have one
   // or two, so that at most the way from base to the last zone passes the first one's colour.
-  float number = 0.0F;
-  for (const FloorLook::Zone& zone : look.zones) map.fill(zone.outline, ++number / 127.0F);
+  float value = 0.0F;
+  for (const FloorLook::Zone& zone : look.zones) {
+    value += zoneValue(look.zones.size());
+    for (const Outline& outline : zone.outlines) map.fill(outline, value);
+  }
   return map;
 }
 
@@ -155,6 +159,11 @@ FloorMap cloudMap(const Eigen::Vector2d& min, const Eigen::Vector2d& max,
 }
 
 }  // namespace
+
+float zoneValue(std::size_t zones) {
+  const float count = std::max(1.0F, static_cast<float>(zones));
+  return std::max(1.0F, std::floor(kTexelScale / count)) / kTexelScale;
+}
 
 QuadTexture makeFloorMaps(const Eigen::Vector2d& min, const Eigen::Vector2d& max,
                           const FloorLook& look, const GreyTexture& clouds) {

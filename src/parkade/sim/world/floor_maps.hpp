@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 
 #include "parkade/sim/world/floor_surface.hpp"
 #include "parkade/sim/world/noise_texture.hpp"
@@ -18,8 +19,12 @@ inline constexpr float kCloudTexel = 0.05F;    ///< m: clouds of wear and damp
 enum FloorChannel : int {
   kCloudChannel,  ///< lighter and darker clouds, -1 to 1
   kDirtChannel,   ///< darkening, 0 to 1: tyre marks along the ways of cars, oil, stains
-  kZoneChannel,   ///< number of FloorLook::zones (0: none) over 127
+  kZoneChannel,   ///< number of FloorLook::zones (0: none) times zoneValue()
 };
+
+/// What kZoneChannel holds of the first of so many zones: as much as lets all have a multiple of
+/// it, so that the shares of cells at a zone's edge are not rounded away.
+float zoneValue(std::size_t zones);
 
 /// What varies slowly over a floor between two corners, one texel per cell, texel (0, 0) at min.
 QuadTexture makeFloorMaps(const Eigen::Vector2d& min, const Eigen::Vector2d& max,

@@ -67,7 +67,8 @@ class PaintedFloor final : public FloorSurface {
     const float shade = std::max(
         0.15F, (1.0F + 0.42F * grain_ * fine + (0.10F + 0.22F * filth_) * coarse) * (1.0F - dirt));
     out.albedo =
-        shade * (look_.zones.empty() ? look_.albedo : zoneAlbedo(127.0F * maps[kZoneChannel]));
+        shade * (look_.zones.empty() ? look_.albedo
+                                     : zoneAlbedo(ground_.zones_per_value * maps[kZoneChannel]));
     out.specular = look_.specular;
     out.roughness = std::clamp(look_.roughness + 0.10F * coarse + 0.4F * dirt, 0.02F, 1.0F);
 
@@ -154,6 +155,7 @@ class PaintedFloor final : public FloorSurface {
     ground_.filth = filth_;
     ground_.specular = look_.specular;
     ground_.roughness = look_.roughness;
+    ground_.zones_per_value = 1.0F / zoneValue(look_.zones.size());
     ground_.zones = std::min(static_cast<int>(look_.zones.size()), GroundTable::kMaxZones);
     for (int i = 0; i <= ground_.zones; ++i) {
       const Eigen::Vector3f& albedo =

@@ -28,7 +28,7 @@ struct FloorLook {
   Eigen::Vector3f albedo = Eigen::Vector3f::Constant(0.30F);
   /// Areas of another colour (painted aisles); their edges are blurred over about 3 cm.
   struct Zone {
-    Outline outline;
+    std::vector<Outline> outlines;  ///< union
     Eigen::Vector3f albedo = Eigen::Vector3f::Constant(0.30F);
   };
   std::vector<Zone> zones;

@@ -120,7 +120,7 @@ TEST(FloorSurface, FarAwayItIsTheMean) {
 // Places asked for together, on paint, across the seams of its tiles and outside the floor.
 TEST(FloorSurface, LooksTheSameInBlocks) {
   FloorLook look;
-  look.zones.push_back({{{0, 3}, {6, 3}, {6, 5}, {0, 5}}, {0.1F, 0.4F, 0.1F}});
+  look.zones.push_back({{{{0, 3}, {6, 3}, {6, 5}, {0, 5}}}, {0.1F, 0.4F, 0.1F}});
   look.joints.push_back({{1.0, 0.0}, {1.0, 5.0}});
   const auto floor = floorWithLine(look, 0.5);
   Random rng(3);
@@ -176,7 +176,7 @@ TEST(FloorSurface, WornPaintIsThinnerAndBroken) {
 
 TEST(FloorSurface, ZonesJointsAndOutsideAreFloor) {
   FloorLook look = plainLook();
-  look.zones.push_back({{{0, 3}, {6, 3}, {6, 5}, {0, 5}}, {0.1F, 0.4F, 0.1F}});
+  look.zones.push_back({{{{0, 3}, {6, 3}, {6, 5}, {0, 5}}}, {0.1F, 0.4F, 0.1F}});
   look.joints.push_back({{1.0, 0.0}, {1.0, 5.0}});
   const auto floor = makeFloorSurface({0.0, 0.0}, {6.0, 5.0}, look, {});
   EXPECT_NEAR(floor->sample(3.0F, 4.0F, 0.01F).albedo.y(), 0.4F, 0.06F);
@@ -185,6 +185,36 @@ TEST(FloorSurface, ZonesJointsAndOutsideAreFloor) {
   for (const float x : {-20.0F, 1.0F, 30.0F}) {
     EXPECT_EQ(floor->sample(x, 2.0F, 0.01F).label, SemanticClass::kFloor);
   }
+}
+
+TEST(FloorSurface, EdgesOfZonesAreSoftAndInPlace) {
+  FloorLook look = plainLook();
+  // Two aisles of one colour, whose edge cuts cells a quarter of the way; and another colour.
+  constexpr double kEdge = 3.01;
+  look.zones.push_back(
+      {{{{0, kEdge}, {2.2, kEdge}, {2.2, 5}, {0, 5}}, {{1.8, kEdge}, {6, kEdge}, {6, 5}, {1.8, 5}}},
+       {0.1F, 0.4F, 0.1F}});
+  look.zones.push_back({{{{0, 0}, {6, 0}, {6, 1}, {0, 1}}}, {0.4F, 0.1F, 0.1F}});
+  const auto floor = makeFloorSurface({0.0, 0.0}, {6.0, 5.0}, look, {});
+  // Clouds shade all colours alike.
+  const auto green_over_red = [&](float x, double y, float footprint = 0.004F) {
+    const Eigen::Vector3f albedo = floor->sample(x, static_cast<float>(y), footprint).albedo;
+    return albedo.y() / albedo.x();
+  };
+  const auto share = [&](float x, double y, float footprint = 0.004F) {
+    const float ratio = green_over_red(x, y, footprint);
+    return (ratio - 1.0F) / (1.0F + 0.5F * ratio);
+  };
+  for (const float x : {1.0F, 4.0F}) {
+    EXPECT_NEAR(share(x, kEdge - 0.04), 0.0F, 0.02F);
+    EXPECT_LT(share(x, kEdge - 0.01) + 0.1F, share(x, kEdge));
+    EXPECT_NEAR(share(x, kEdge), 0.5F, 0.12F);
+    EXPECT_LT(share(x, kEdge) + 0.1F, share(x, kEdge + 0.01));
+    EXPECT_NEAR(share(x, kEdge + 0.05), 1.0F, 0.02F);
+    EXPECT_NEAR(share(x, kEdge, 0.3F), 0.5F, 0.2F);
+  }
+  EXPECT_NEAR(share(2.0F, 4.0), 1.0F, 0.01F);
+  EXPECT_NEAR(green_over_red(3.0F, 0.5), 0.25F, 0.01F);
 }
 
 TEST(FloorSurface, SameSeedSameFloor) {

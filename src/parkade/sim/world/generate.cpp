@@ -15,12 +15,14 @@ namespace parkade::sim {
 namespace {
 
 /// Exactly the asked share of the slots, to the nearest slot.
-void parkCars(Garage& garage, double occupancy, Random random) {
+void parkCars(const GarageOptions& options, Garage& garage) {
+  const int seed = options.parked_seed < 0 ? options.seed : options.parked_seed;
+  Random random = Random(static_cast<std::uint64_t>(seed)).fork("garage").fork("occupancy");
   std::vector<std::size_t> order(garage.slots.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   random.shuffle(order);
-  const auto count =
-      static_cast<std::size_t>(std::lround(occupancy * static_cast<double>(garage.slots.size())));
+  const auto count = static_cast<std::size_t>(
+      std::lround(options.occupancy * static_cast<double>(garage.slots.size())));
   for (std::size_t i = 0; i < count; ++i) garage.slots[order[i]].occupied = true;
 }
 
@@ -98,7 +100,7 @@ Result<Garage> generateGarage(const GarageOptions& options) {
   paintSlots(layout, style, garage);
   paintAisles(style, random.fork("aisles"), garage);
   placeSigns(layout, style, random.fork("signs"), garage);
-  parkCars(garage, options.occupancy, random.fork("occupancy"));
+  parkCars(options, garage);
   return garage;
 }
 

@@ -17,6 +17,7 @@ inline constexpr std::string_view kZoneLetters = "ABCDEFGHJKLMNPQRSTUVWXYZ";
 struct GarageOptions {
   std::string preset = "paper";
   int seed = 0;
+  int parked_seed = -1;
   double occupancy = 0.6;
   double one_way = 0.0;
   std::string first_zone = "A";
@@ -27,6 +28,8 @@ struct GarageOptions {
             {"paper", "random"});
     v.field("seed", seed, "",
             "Of the layout (random), of the places of parked cars, of wear and dirt.", 0, 1e9);
+    v.field("parked_seed", parked_seed, "",
+            "Of which slots hold a parked car; nothing else changes. -1: seed.", -1, 1e9);
     v.field("occupancy", occupancy, "share", "Share of the slots with a parked car.", 0.0, 1.0);
     v.field("one_way", one_way, "share",
             "Share of the aisles that are one-way (random), as far as all stay in reach.", 0.0,

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cctype>
 #include <queue>
 #include <set>
@@ -216,6 +217,39 @@ TEST(GenerateTest, OccupancyIsExactToTheSlot) {
     for (const Slot& slot : garage.slots) occupied += slot.occupied ? 1 : 0;
     EXPECT_EQ(occupied, std::lround(share * 157));
   }
+}
+
+std::vector<bool> occupiedOf(const Garage& garage) {
+  std::vector<bool> occupied;
+  for (const Slot& slot : garage.slots) occupied.push_back(slot.occupied);
+  return occupied;
+}
+
+TEST(GenerateTest, AnotherParkedSeedParksOtherCarsInTheSameGarage) {
+  const Garage usual = make("random", 12);
+  GarageOptions options;
+  options.preset = "random";
+  options.seed = 12;
+  options.parked_seed = 12;
+  EXPECT_EQ(occupiedOf(generateGarage(options).value()), occupiedOf(usual));
+  options.parked_seed = 13;
+  const Garage later = generateGarage(options).value();
+  const std::vector<bool> before = occupiedOf(usual);
+  const std::vector<bool> after = occupiedOf(later);
+  EXPECT_NE(after, before);
+  EXPECT_EQ(std::count(after.begin(), after.end(), true),
+            std::count(before.begin(), before.end(), true));
+  ASSERT_EQ(later.slots.size(), usual.slots.size());
+  for (std::size_t i = 0; i < usual.slots.size(); ++i) {
+    EXPECT_EQ(outlineOf(later.slots[i]), outlineOf(usual.slots[i]));
+  }
+  ASSERT_EQ(later.markings.size(), usual.markings.size());
+  for (std::size_t i = 0; i < usual.markings.size(); ++i) {
+    EXPECT_EQ(later.markings[i].polygons, usual.markings[i].polygons);
+  }
+  EXPECT_EQ(later.pillars.size(), usual.pillars.size());
+  EXPECT_EQ(later.signs.size(), usual.signs.size());
+  EXPECT_EQ(later.aisles.nodes, usual.aisles.nodes);
 }
 
 TEST(GenerateTest, RefusesWhatItDoesNotKnow) {

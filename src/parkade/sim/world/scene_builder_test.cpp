@@ -11,6 +11,7 @@
 #include "parkade/sim/world/generate.hpp"
 #include "parkade/sim/world/parked_cars.hpp"
 #include "parkade/sim/world/polygon.hpp"
+#include "parkade/sim/world/style.hpp"
 
 namespace parkade::sim {
 namespace {
@@ -105,6 +106,54 @@ TEST(SceneBuilderTest, TheFloorShowsEveryMarkingWhereTheTruthHasIt) {
     }
   }
   EXPECT_GT(checked, 1000);
+}
+
+/// A random garage whose slots are grey and whose aisles are green.
+int seedOfGreenAisles() {
+  for (int seed = 0; seed < 400; ++seed) {
+    const GarageStyle style = makeStyle("random", static_cast<std::uint64_t>(seed));
+    const Eigen::Vector3f& slot = style.slot_floor;
+    const Eigen::Vector3f& aisle = style.aisle_floor;
+    if (std::abs(slot.y() / slot.x() - 1.0F) < 0.1F && aisle.y() > 2.0F * aisle.x()) return seed;
+  }
+  return -1;
+}
+
+TEST(SceneBuilderTest, AllAislesOfATwoToneFloorEndSoftlyWhereTheyEnd) {
+  const int seed = seedOfGreenAisles();
+  ASSERT_GE(seed, 0);
+  Garage garage = make("random", seed);
+  garage.markings.clear();  // the bare floor
+  const GarageStyle style = makeStyle(garage.name, garage.seed);
+  const Eigen::Vector3f slot = style.slot_floor;
+  const Eigen::Vector3f change = style.aisle_floor - style.slot_floor;
+  const std::shared_ptr<const FloorSurface> floor = buildFloor(garage, 0.0, 0.0);
+  // The aisle's share of the colour; grain and clouds shade both alike.
+  const auto share = [&](const Eigen::Vector2d& p) {
+    const Eigen::Vector3f albedo =
+        floor->sample(static_cast<float>(p.x()), static_cast<float>(p.y()), 0.004F).albedo;
+    const float ratio = albedo.y() / albedo.x();
+    return (slot.y() - ratio * slot.x()) / (ratio * change.x() - change.y());
+  };
+  int checked = 0;
+  for (const AisleGraph::Edge& edge : garage.aisles.edges) {
+    const Eigen::Vector2d a = garage.aisles.nodes[static_cast<std::size_t>(edge.from)];
+    const Eigen::Vector2d b = garage.aisles.nodes[static_cast<std::size_t>(edge.to)];
+    const Eigen::Vector2d along = (b - a).normalized();
+    if ((b - a).norm() < 2.0 * edge.width) continue;  // other aisles are near
+    for (const double side : {-1.0, 1.0}) {
+      const Eigen::Vector2d out = side * Eigen::Vector2d(-along.y(), along.x());
+      const Eigen::Vector2d border = 0.5 * (a + b) + 0.5 * edge.width * out;
+      const Eigen::Vector2d beyond = border + 0.1 * out;
+      if (((beyond - garage.min).array() < 0.2).any()) continue;
+      if (((garage.max - beyond).array() < 0.2).any()) continue;
+      EXPECT_NEAR(share(border - 0.1 * out), 1.0F, 0.03F) << border.transpose();
+      EXPECT_NEAR(share(border), 0.5F, 0.2F) << border.transpose();
+      EXPECT_NEAR(share(beyond), 0.0F, 0.03F) << border.transpose();
+      ++checked;
+    }
+  }
+  EXPECT_GE(checked, 4);
 }
 
 TEST(SceneBuilderTest, LampsHangBelowTheCeilingAndMaterialsExist) {
