@@ -158,6 +158,11 @@ Camera readCamera(const YamlNode& node, const char* coefficients_key) {
   if (width <= 0 || height <= 0) {
     resolution.fail(fmt::format("expected a width and height > 0, found {} x {}", width, height));
   }
+  constexpr int kLongestSide = 65'535;  // px: what a JPEG can hold
+  if (width > kLongestSide || height > kLongestSide) {
+    resolution.fail(fmt::format("expected a width and height of at most {}, found {} x {}",
+                                kLongestSide, width, height));
+  }
   const YamlNode model = node.at("camera_model");
   const std::string name = model.asString();
   if (name == "pinhole") return {readPinhole(node, coefficients_key), width, height};

@@ -133,24 +133,11 @@ Json tableJson(const TextTable& table) {
       {"title", table.title}, {"note", table.note}, {"header", table.header}, {"rows", table.rows}};
 }
 
-std::string settingText(const PaperBenchOptions& options) {
-  std::string text =
-      fmt::format("Simulated garage(s): {}; {} pixel, {} threads, parkade {}.", options.garages,
-                  options.fast || options.quick ? "one sample a" : "2 x 2 samples a",
-                  options.threads, PARKADE_VERSION);
-  if (!options.sequences.empty()) text += " Existing recordings were used where they were given.";
-  if (options.duration_s > 0.0) {
-    text += fmt::format(" Every drive was cut after {:g} s: not the paper's whole routes.",
-                        options.duration_s);
-  }
-  return text;
-}
-
 Status writeAll(const PaperBenchOptions& options, const BenchPlan& plan,
-                const std::vector<JudgedRun>& runs) {
+                const std::vector<JudgedRun>& runs, const std::string& setting) {
   std::vector<BenchRecord> records;
   Json metrics;
-  metrics["setting"] = settingText(options);
+  metrics["setting"] = setting;
   metrics["runs"] = Json::array();
   for (const JudgedRun& run : runs) {
     records.push_back(run.record);
@@ -160,14 +147,14 @@ Status writeAll(const PaperBenchOptions& options, const BenchPlan& plan,
   for (const BenchVariant& variant : plan.variants) methods.push_back(variant.method);
   std::vector<TextTable> tables = paperTables(records, methods);
   for (TextTable& table : detailTables(records, methods)) tables.push_back(std::move(table));
-  std::string text = "## Bench\n\n" + settingText(options) + "\n";
+  std::string text = "## Bench\n\n" + setting + "\n";
   metrics["tables"] = Json::array();
   for (const TextTable& table : tables) {
     fmt::print("{}\n", plainText(table));
     text += "\n" + markdown(table);
     metrics["tables"].push_back(tableJson(table));
   }
-  Status status = writeBenchReport(options, runs, tables, settingText(options));
+  Status status = writeBenchReport(options, runs, tables, setting);
   if (status) status = writeFileAtomic(joinPath(options.out, "tables.md"), text);
   if (status) {
     status = writeFileAtomic(joinPath(options.out, "metrics.json"),
@@ -187,8 +174,12 @@ int runPaperBench(PaperBenchOptions options) {
   const Result<BenchPlan> plan = planBench(options);
   if (!plan) return failUsage(plan.error());
   if (Status made = makeFolders(options.out); !made) return fail(made.error());
+  // Before anything is drawn, perhaps into the same folder.
+  const std::string setting = settingText(options, *plan, givenDrives(options, *plan));
   const std::vector<JudgedRun> runs = performAll(options, *plan);
-  if (Status written = writeAll(options, *plan, runs); !written) return fail(written.error());
+  if (Status written = writeAll(options, *plan, runs, setting); !written) {
+    return fail(written.error());
+  }
   std::size_t failed = 0;
   for (const JudgedRun& run : runs) failed += run.record.failed ? 1 : 0;
   if (failed == 0) return 0;

@@ -18,6 +18,9 @@
 namespace parkade::cli {
 namespace {
 
+// The method for which 'parkade run' takes one camera where none is named.
+constexpr const char* kOneCameraMethod = "semantic";
+
 // The methods that the command knows by name: those of the paper's tables, and what teaches more.
 const std::vector<BenchVariant>& knownVariants() {
   static const std::vector<BenchVariant> kVariants = {
@@ -88,8 +91,10 @@ Status addOwn(const PaperBenchOptions& options, BenchPlan& plan) {
     if (parts.empty()) {
       return Error{fmt::format("bench: --variant {}: expected NAME=METHOD,option=value,...", text)};
     }
+    // As 'parkade run' does where no cameras are named.
+    const int cameras = parts[0] == kOneCameraMethod ? 1 : 0;
     BenchVariant variant{
-        {pair->first, pair->first, false, true}, parts[0], 0, options.settings, ""};
+        {pair->first, pair->first, false, true}, parts[0], cameras, options.settings, ""};
     variant.settings.insert(variant.settings.end(), parts.begin() + 1, parts.end());
     if (Status added = addVariant(plan, std::move(variant)); !added) return added;
   }
@@ -219,6 +224,31 @@ std::string pickCameras(const std::vector<std::string>& names, int count) {
     const std::size_t at =
         static_cast<std::size_t>(i) * names.size() / static_cast<std::size_t>(count);
     text += (i > 0 ? "," : "") + names[at];
+  }
+  return text;
+}
+
+std::string camerasOption(const BenchVariant& variant, const std::vector<std::string>& names) {
+  std::string picked = pickCameras(names, variant.cameras);
+  if (!picked.empty() || variant.run_method != kOneCameraMethod) return picked;
+  return fmt::format("{}", fmt::join(names, ","));
+}
+
+std::string settingText(const PaperBenchOptions& options, const BenchPlan& plan,
+                        const std::vector<std::string>& given) {
+  const char* samples = options.fast || options.quick ? "one sample" : "2 x 2 samples";
+  const bool all_given = given.size() >= plan.drives.size();
+  std::string text = fmt::format("Simulated garage(s): {}; ", options.garages);
+  if (given.empty()) text += fmt::format("{} a pixel, ", samples);
+  text += fmt::format("{} threads, parkade {}.", options.threads, PARKADE_VERSION);
+  if (!given.empty()) {
+    text += fmt::format(" Recordings in {} were used as they are for {}.", options.sequences,
+                        fmt::join(given, ", "));
+    if (!all_given) text += fmt::format(" Others were drawn with {} a pixel.", samples);
+  }
+  if (options.duration_s > 0.0 && !all_given) {
+    text += fmt::format(" {} was cut after {:g} s: not the paper's whole routes.",
+                        given.empty() ? "Every drive" : "Each of these", options.duration_s);
   }
   return text;
 }

@@ -48,7 +48,7 @@ struct BenchDrive {
 struct BenchVariant {
   BenchMethod method;
   std::string run_method;             ///< of 'parkade run'; empty: imported
-  int cameras = 0;                    ///< so many, evenly around; 0: all
+  int cameras = 0;                    ///< so many, evenly around; 0: all of the rig
   std::vector<std::string> settings;  ///< of --set
   std::string import_folder;
 };
@@ -64,5 +64,14 @@ Result<BenchPlan> planBench(const PaperBenchOptions& options);
 /// So many of the cameras, evenly spread over their order (rigs list them around the car, from the
 /// front), as --cameras takes them; empty for 0.
 std::string pickCameras(const std::vector<std::string>& names, int count);
+
+/// What a variant's run is told with --cameras; empty where nothing, which stands for all, though
+/// not for the method semantic.
+std::string camerasOption(const BenchVariant& variant, const std::vector<std::string>& names);
+
+/// What the tables were made with, for their reader; given: drives whose recordings were there, for
+/// which how others were drawn says nothing.
+std::string settingText(const PaperBenchOptions& options, const BenchPlan& plan,
+                        const std::vector<std::string>& given);
 
 }  // namespace parkade::cli

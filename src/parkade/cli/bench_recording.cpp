@@ -71,13 +71,23 @@ Status retell(const std::string& drawn, const sim::Simulation& simulation,
   return {};
 }
 
+bool isGiven(const PaperBenchOptions& options, const std::string& name) {
+  return !options.sequences.empty() && isWhole(joinPath(options.sequences, name));
+}
+
 }  // namespace
 
-Result<std::string> provideSequence(const PaperBenchOptions& options, const BenchDrive& drive) {
-  if (!options.sequences.empty()) {
-    const std::string given = joinPath(options.sequences, drive.name);
-    if (isWhole(given)) return given;
+std::vector<std::string> givenDrives(const PaperBenchOptions& options, const BenchPlan& plan) {
+  std::vector<std::string> names;
+  for (const BenchDrive& drive : plan.drives) {
+    const bool retold = !drive.pictures_of.empty() && isGiven(options, drive.pictures_of);
+    if (retold || isGiven(options, drive.name)) names.push_back(drive.name);
   }
+  return names;
+}
+
+Result<std::string> provideSequence(const PaperBenchOptions& options, const BenchDrive& drive) {
+  if (isGiven(options, drive.name)) return joinPath(options.sequences, drive.name);
   const std::string folder = joinPath(joinPath(options.out, "sequences"), drive.name);
   const bool same = isOf(drive.spec, folder);
   if (same && isWhole(folder)) return folder;

@@ -28,9 +28,10 @@ std::string mapErrors(const JudgedRun& run) {
   if (!truth) return "";
   const Result<PlacedMap> placed = loadPlacedMap(run.folder, truth->driven);
   if (!placed) return "";
-  const MapEvaluation evaluation =
+  const Result<MapEvaluation> evaluation =
       evaluateMap(placed->map, SE2::fromSE3(placed->T_truth_map), *truth);
-  return reportPng(drawMapErrors(placed->map, *truth, evaluation));
+  if (!evaluation) return "";
+  return reportPng(drawMapErrors(placed->map, *truth, *evaluation));
 }
 
 struct DriveCharts {

@@ -7,11 +7,11 @@
 #include <filesystem>
 
 #include "parkade/camera/rig.hpp"
+#include "parkade/cli/bench_key.hpp"
 #include "parkade/cli/child_process.hpp"
 #include "parkade/cli/eval_map.hpp"
 #include "parkade/cli/map_truth_file.hpp"
 #include "parkade/cli/told_covariances.hpp"
-#include "parkade/core/random.hpp"
 #include "parkade/eval/map_report.hpp"
 #include "parkade/eval/report.hpp"
 #include "parkade/io/file.hpp"
@@ -23,38 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-std::uint64_t hashOf(const std::string& bytes, std::uint64_t start = 0) {
-  std::uint64_t hash = start;
-  for (const char c : bytes) hash = hash64(hash, static_cast<unsigned char>(c));
-  return hash;
-}
-
-// Another build gives other figures: they must not stand in one table.
-std::uint64_t programHash() {
-  static const std::uint64_t kHash = [] {
-    const Result<std::string> bytes = readFile(programPath());
-    return bytes ? std::hash<std::string>{}(*bytes) : 0U;
-  }();
-  return kHash;
-}
-
 std::string textOf(const std::string& path) {
   const Result<std::string> text = readFile(path);
   return text ? *text : "";
-}
-
-// What decides the figures of a run.
-std::string keyOf(const BenchVariant& variant, const std::string& cameras,
-                  const std::string& sequence, const std::string& trajectory) {
-  std::string text = variant.run_method + "\n" + cameras + "\n";
-  for (const std::string& setting : variant.settings) text += setting + "\n";
-  for (const char* file : {"spec.yaml", "rig.yaml", "truth/garage.json", "truth/agents.csv"}) {
-    text += textOf(joinPath(sequence, file));
-  }
-  const Result<std::string> reference = findReference(sequence);
-  if (reference) text += textOf(*reference);
-  if (!variant.import_folder.empty()) text += textOf(trajectory);
-  return fmt::format("{:016x}", hashOf(text, programHash()));
 }
 
 bool isKept(const Json& mark, const std::string& key) {
@@ -123,8 +94,10 @@ Result<Json> judgeMap(const std::string& folder, const std::string& sequence) {
   if (!truth) return truth.error();
   const Result<PlacedMap> placed = loadPlacedMap(folder, truth->driven);
   if (!placed) return placed.error();
-  return Json::parse(
-      mapEvaluationJson(evaluateMap(placed->map, SE2::fromSE3(placed->T_truth_map), *truth, {})));
+  const Result<MapEvaluation> evaluation =
+      evaluateMap(placed->map, SE2::fromSE3(placed->T_truth_map), *truth);
+  if (!evaluation) return evaluation.error();
+  return Json::parse(mapEvaluationJson(*evaluation));
 }
 
 Status judge(JudgedRun& run) {
@@ -161,16 +134,17 @@ Status execute(const PaperBenchOptions& options, const BenchVariant& variant,
   return runProgram(arguments, run.folder + ".log");
 }
 
-Result<std::string> camerasOf(const std::string& sequence, int count) {
-  if (count == 0) return std::string();
-  const Result<Rig> rig = readRig(joinPath(sequence, "rig.yaml"));
+Result<std::string> camerasOf(const BenchVariant& variant, const std::string& sequence) {
+  if (!variant.import_folder.empty()) return std::string();
+  const Result<Rig> rig = readSequenceRig(sequence);
   if (!rig) return rig.error();
   std::vector<std::string> names;
   for (const RigCamera& camera : rig->cameras) names.push_back(camera.name);
-  if (count > static_cast<int>(names.size())) {
-    return Error{fmt::format("the rig has {} cameras, {} were asked for", names.size(), count)};
+  if (variant.cameras > static_cast<int>(names.size())) {
+    return Error{
+        fmt::format("the rig has {} cameras, {} were asked for", names.size(), variant.cameras)};
   }
-  return pickCameras(names, count);
+  return camerasOption(variant, names);
 }
 
 }  // namespace
@@ -193,9 +167,9 @@ JudgedRun performRun(const PaperBenchOptions& options, const BenchDrive& drive,
   const bool imported = !variant.import_folder.empty();
   run.trajectory = imported ? joinPath(variant.import_folder, drive.name + ".tum")
                             : joinPath(run.folder, "trajectory.tum");
-  const Result<std::string> cameras = camerasOf(sequence, variant.cameras);
+  const Result<std::string> cameras = camerasOf(variant, sequence);
   if (!cameras) return failedRun(drive, variant, cameras.error().message);
-  const std::string key = keyOf(variant, *cameras, sequence, run.trajectory);
+  const std::string key = runKey(variant, {*cameras, options.threads, sequence, run.trajectory});
   const std::string mark = joinPath(run.folder, "bench.json");
   Json before = Json::parse(textOf(mark), nullptr, false);
   if (!options.again && isKept(before, key)) {

@@ -35,6 +35,7 @@ struct BevArguments {
   double start_s = 0.0;
   double duration_s = 0.0;
   int every = 1;
+  bool tolerate_stamps = false;
   bool overlay = false;
   bool force = false;
   std::string network;  // class map
@@ -159,6 +160,7 @@ Status stitchSequence(const BevArguments& arguments) {
   request.cameras = arguments.cameras;
   request.start_s = arguments.start_s;
   request.duration_s = arguments.duration_s;
+  request.tolerate_stamps = arguments.tolerate_stamps;
   request.gray = false;
   Result<OpenedSource> opened = openSource(request);
   if (!opened) return opened.error();
@@ -189,6 +191,11 @@ Status stitchSequence(const BevArguments& arguments) {
     ++written;
   }
   progress.finish();
+  if (written == 0) {
+    return Error{fmt::format(
+        "{}: no picture was written: no frame set could be read; 'parkade info' tells more",
+        arguments.source)};
+  }
   fmt::print("{} pictures in {}\n", written, arguments.out);
   return {};
 }
@@ -227,6 +234,8 @@ void addBevCommand(CLI::App& app, int& exit_code) {
       ->check(notNegative());
   command->add_option("--duration", arguments->duration_s, "Stop after this much, s; 0: at the end")
       ->check(notNegative());
+  command->add_flag("--tolerate-stamps", arguments->tolerate_stamps,
+                    "Repair stamps that go backwards or repeat instead of refusing the sequence");
   command->add_option("--rig", arguments->rig, "rig.yaml for single pictures");
   command->add_option("--image", arguments->images, "CAMERA=FILE, once per camera, with --rig")
       ->expected(1)

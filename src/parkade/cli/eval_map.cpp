@@ -36,15 +36,18 @@ Status evaluateMapFile(const EvalMapArguments& arguments) {
   if (!truth) return truth.error();
   const Result<PlacedMap> placed = loadPlacedMap(arguments.map, truth->driven);
   if (!placed) return placed.error();
-  const MapEvaluation evaluation =
+  const Result<MapEvaluation> evaluation =
       evaluateMap(placed->map, SE2::fromSE3(placed->T_truth_map), *truth, arguments.options);
+  if (!evaluation) {
+    return Error{fmt::format("{}: {}", arguments.map, evaluation.error().message)};
+  }
   fmt::print("map        {}\ntruth      {}\n\n{}", arguments.map, arguments.sequence,
-             mapEvaluationTable(evaluation));
+             mapEvaluationTable(*evaluation));
   if (!arguments.json.empty()) {
-    if (Status s = writeFileAtomic(arguments.json, mapEvaluationJson(evaluation)); !s) return s;
+    if (Status s = writeFileAtomic(arguments.json, mapEvaluationJson(*evaluation)); !s) return s;
   }
   if (arguments.picture.empty()) return {};
-  const Result<cv::Mat> picture = drawMapErrors(placed->map, *truth, evaluation);
+  const Result<cv::Mat> picture = drawMapErrors(placed->map, *truth, *evaluation);
   if (!picture) return picture.error();
   ImageEncoding png;
   png.png = true;

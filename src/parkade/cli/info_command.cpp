@@ -58,7 +58,9 @@ Result<int> describeMapFile(const InfoArguments& arguments) {
 #endif
 
 Status writeJson(const std::string& path, const nlohmann::json& json) {
-  return path.empty() ? Status() : writeFileAtomic(path, json.dump(2) + "\n");
+  if (path.empty()) return {};
+  return writeFileAtomic(path,
+                         json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 Result<int> describeRig(const InfoArguments& arguments) {

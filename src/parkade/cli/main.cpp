@@ -5,6 +5,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <cstdio>
 #include <exception>
 
 #include "parkade/cli/command.hpp"
@@ -89,6 +90,13 @@ int run(int argc, char** argv) {
   return exit_code;
 }
 
+// A full disk behind stdout shows only here.
+int flushOutput(int exit_code) {
+  const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (written || exit_code != 0) return exit_code;
+  return fail({"what the command prints could not be written (is the disk full?)"});
+}
+
 }  // namespace
 
 int fail(const Error& error) {
@@ -106,7 +114,7 @@ int failUsage(const Error& error) {
 int main(int argc, char** argv) {
   try {
     parkade::cli::logToStderr();
-    return parkade::cli::run(argc, argv);
+    return parkade::cli::flushOutput(parkade::cli::run(argc, argv));
   } catch (const std::exception& error) {
     return parkade::cli::fail({fmt::format("internal error: {}", error.what())});
   }

@@ -150,9 +150,9 @@ Status checkMap(const MapArguments& arguments) {
   const std::vector<std::string> faults = findFaults(*map);
   if (!arguments.json.empty()) {
     const nlohmann::json result = {{"faults", faults}};
-    if (Status status = writeFileAtomic(arguments.json, result.dump(2) + "\n"); !status) {
-      return status;
-    }
+    const std::string text =
+        result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    if (Status status = writeFileAtomic(arguments.json, text); !status) return status;
   }
   if (faults.empty()) {
     fmt::print("{}: sound: {} slots, {} objects, {} nodes\n", arguments.path, map->slots.size(),
@@ -232,11 +232,15 @@ Status mergeMaps(const MapArguments& arguments) {
   Result<MapFile> file = MapFile::open(out);
   if (!file) return file.error();
   if (Status status = file->save(*saved); !status) return status;
+  const std::string gone =
+      report->objects_gone > 0
+          ? fmt::format(", {} gone, for bare floor was seen there", report->objects_gone)
+          : "";
   fmt::print(
       "{}: {} slots ({} seen again, {} new, {} refused, for they lie across others), {} objects "
-      "({} seen again, {} new)\n",
+      "({} seen again, {} new{})\n",
       out, saved->slots.size(), report->slots_again, report->slots_new, report->slots_refused,
-      saved->objects.size(), report->objects_again, report->objects_new);
+      saved->objects.size(), report->objects_again, report->objects_new, gone);
   return {};
 }
 

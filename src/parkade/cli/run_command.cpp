@@ -148,8 +148,9 @@ RunDescription describe(const RunArguments& arguments, const Rig& rig, PipelineO
 Status writeResults(const RunArguments& arguments, const RunDescription& description,
                     const MappingRun& run, const HealthLog& health) {
   const std::string& out = arguments.out;
+  const RunTexts texts = runTexts(description, run, health);
   Status status = clearRunFolder(out, configText(description));
-  if (status) status = writeRunFiles(out, description, run, health, arguments.with_final);
+  if (status) status = writeRunFiles(out, texts, run, health, arguments.with_final);
   if (status) status = writeMap(out, description.source, run);
   return status;
 }

@@ -5,7 +5,6 @@
 #include <fmt/core.h>
 #include <sys/resource.h>
 
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -23,6 +22,11 @@
 
 namespace parkade::cli {
 namespace {
+
+// Paths and names of the user's need not be UTF-8.
+std::string jsonText(const nlohmann::json& json) {
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
 
 nlohmann::json timingJson(const RunSummary& summary) {
   nlohmann::json json;
@@ -149,8 +153,15 @@ void DebugImages::onTracks(const TracksEvent& event) {
   previous_ = event.tracks;
 }
 
-Status writeRunFiles(const std::string& folder, const RunDescription& description,
-                     const MappingRun& run, const HealthLog& health, bool with_final) {
+RunTexts runTexts(const RunDescription& description, const MappingRun& run,
+                  const HealthLog& health) {
+  return {{"health.csv", health.text()},
+          {"timing.json", jsonText(timingJson(run.summary()))},
+          {"metrics.json", jsonText(metricsJson(description, run, health))}};
+}
+
+Status writeRunFiles(const std::string& folder, const RunTexts& texts, const MappingRun& run,
+                     const HealthLog& health, bool with_final) {
   const auto path = [&](const char* name) { return joinPath(folder, name); };
   Status written =
       writeTrajectory(path("trajectory.tum"), run.trajectory(), TrajectoryFormat::kTum);
@@ -164,13 +175,8 @@ Status writeRunFiles(const std::string& folder, const RunDescription& descriptio
                                     TrajectoryFormat::kTum);
     if (!status) return status;
   }
-  const std::array<std::pair<const char*, std::string>, 3> files = {{
-      {"health.csv", health.text()},
-      {"timing.json", timingJson(run.summary()).dump(2) + "\n"},
-      {"metrics.json", metricsJson(description, run, health).dump(2) + "\n"},
-  }};
-  for (const auto& [name, text] : files) {
-    Status status = writeFileAtomic(path(name), text);
+  for (const auto& [name, text] : texts) {
+    Status status = writeFileAtomic(joinPath(folder, name), text);
     if (!status) return status;
   }
   return {};

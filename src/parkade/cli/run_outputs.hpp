@@ -4,6 +4,8 @@
 
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "parkade/core/result.hpp"
 #include "parkade/pipeline/mapping_run.hpp"
@@ -58,10 +60,16 @@ struct RunDescription {
 /// The text of config.yaml.
 std::string configText(const RunDescription& description);
 
-/// Writes trajectory*.tum, covariance.csv, health.csv, timing.json and metrics.json, each whole or
-/// not at all.
-Status writeRunFiles(const std::string& folder, const RunDescription& description,
-                     const MappingRun& run, const HealthLog& health, bool with_final);
+/// Name and text of files.
+using RunTexts = std::vector<std::pair<std::string, std::string>>;
+
+/// health.csv, timing.json and metrics.json: made before the files of an earlier run go.
+RunTexts runTexts(const RunDescription& description, const MappingRun& run,
+                  const HealthLog& health);
+
+/// Writes trajectory*.tum, covariance.csv and the texts, each whole or not at all.
+Status writeRunFiles(const std::string& folder, const RunTexts& texts, const MappingRun& run,
+                     const HealthLog& health, bool with_final);
 
 /// Writes map.db and the exports map/, where the run made a map.
 Status writeMap(const std::string& folder, const std::string& name, const MappingRun& run);

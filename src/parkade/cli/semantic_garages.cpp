@@ -6,6 +6,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <numeric>
 #include <variant>
 
 #include "parkade/camera/rig.hpp"
@@ -49,23 +50,31 @@ void varyRig(Random random, Rig& rig) {
 
 Result<std::vector<int>> parseGarages(const std::string& text) {
   const std::string kPrefix = "random:";
+  constexpr int kMostGarages = 100'000;
+  constexpr int kLastSeed = 1'000'000'000;  // SimSpec's
   const Error wrong{
       fmt::format("--garages {}: expected random:N, or random:FIRST-LAST with garage seeds", text)};
+  const Error too_many{fmt::format("--garages {}: at most {} garages, with seeds to {}", text,
+                                   kMostGarages, kLastSeed)};
   if (text.rfind(kPrefix, 0) != 0) return wrong;
   const std::string rest = text.substr(kPrefix.size());
   const std::size_t dash = rest.find('-');
   int first = kFirstTestSeed;
-  int last = 0;
+  int count = 0;
   if (dash == std::string::npos) {
-    int count = 0;
     if (!readNumber(rest, count) || count < 1) return wrong;
-    last = first + count - 1;
-  } else if (!readNumber(rest.substr(0, dash), first) || !readNumber(rest.substr(dash + 1), last) ||
-             last < first) {
-    return wrong;
+  } else {
+    int last = 0;
+    if (!readNumber(rest.substr(0, dash), first) || !readNumber(rest.substr(dash + 1), last) ||
+        last < first) {
+      return wrong;
+    }
+    if (last > kLastSeed) return too_many;
+    count = last - first + 1;
   }
-  std::vector<int> seeds;
-  for (int seed = first; seed <= last; ++seed) seeds.push_back(seed);
+  if (count > kMostGarages) return too_many;
+  std::vector<int> seeds(static_cast<std::size_t>(count));
+  std::iota(seeds.begin(), seeds.end(), first);
   return seeds;
 }
 

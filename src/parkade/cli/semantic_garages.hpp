@@ -13,7 +13,8 @@ namespace parkade::cli {
 /// Garage seeds 0 to 4999 are for training, 5000 to 5999 for scores.
 inline constexpr int kFirstTestSeed = 5000;
 
-/// Seeds of "random:N" (N of them from the first test seed on), or "random:FIRST-LAST".
+/// Seeds of "random:N" (N of them from the first test seed on), or "random:FIRST-LAST"; at most
+/// 100,000.
 Result<std::vector<int>> parseGarages(const std::string& text);
 
 /// The conditions of a garage's drive, drawn from its seed: 10 to 1000 lux (even in the logarithm),

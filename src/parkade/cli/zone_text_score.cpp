@@ -24,6 +24,7 @@ namespace parkade::cli {
 namespace {
 
 constexpr double kTextReach = 10.0;                // m
+constexpr double kAnyDistance = 1e4;               // m
 constexpr double kMaxSlant = 60.0 * M_PI / 180.0;  // as for maps: a face is legible up to there
 constexpr double kLeastInSight = 0.9;              // share of the text's area
 constexpr double kSure = 0.5;                      // readings that count as told
@@ -115,7 +116,7 @@ class ZoneTextScore : public SampleScore {
         findZoneMarkers(labels, image, sampler.bodyMask(camera), eye.camera,
                         R_level_vehicle * eye.T_vehicle_cam.rotation(), options_.faces);
     const std::vector<TrueZoneText> texts =
-        trueZoneTexts(sampler, sample, camera, true_labels, 1.5 * kTextReach);
+        trueZoneTexts(sampler, sample, camera, true_labels, kAnyDistance);
     std::vector<Read> reads;
     for (const ZoneMarkerSight& sight : sights) {
       Result<ReadMarker> marker = readMarker(sight, reader_, kZoneLetters);
@@ -130,10 +131,11 @@ class ZoneTextScore : public SampleScore {
 
   void count(const std::vector<TrueZoneText>& texts, const std::vector<Read>& reads) {
     for (const Read& read : reads) {
-      if (read.truth == nullptr || read.truth->distance > kTextReach) continue;
       if (read.reading.text.empty() || read.reading.probability < kSure) continue;
+      const std::optional<bool> right = isRight(read.reading.text, read.truth, kTextReach);
+      if (!right) continue;
       ++told_.texts;
-      told_.right += read.reading.text == read.truth->text ? 1 : 0;
+      told_.right += *right ? 1 : 0;
     }
     for (const TrueZoneText& text : texts) {
       if (text.distance > kTextReach || text.slant > kMaxSlant || text.in_sight < kLeastInSight) {

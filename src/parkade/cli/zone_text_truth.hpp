@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,15 @@ std::vector<TrueZoneText> trueZoneTexts(const SemanticSampler& sampler,
 /// its middle; null where there is none.
 const TrueZoneText* textWithin(const std::vector<TrueZoneText>& texts,
                                const std::array<Eigen::Vector2d, 4>& corners);
+
+/// Whether what was read on a face is the text there (textWithin(); null: none, so that nothing can
+/// be right). Nothing where that is further away than `reach`, which is not judged.
+inline std::optional<bool> isRight(const std::string& reading, const TrueZoneText* text,
+                                   double reach) {
+  if (text == nullptr) return false;
+  if (text->distance > reach) return std::nullopt;
+  return reading == text->text;
+}
 
 /// Share of a text's area that lies in a quadrilateral (corners in order); of the part of it from
 /// `from` to `to` of its width.

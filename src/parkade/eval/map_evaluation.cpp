@@ -303,8 +303,8 @@ Result<SE3> placeByFirstPose(TimeNs t_ns, const SE3& T_map_vehicle, const Trajec
   return T;
 }
 
-MapEvaluation evaluateMap(const ParkingMap& map, const SE2& T_truth_map, const MapTruth& truth,
-                          const MapEvaluationOptions& options) {
+Result<MapEvaluation> evaluateMap(const ParkingMap& map, const SE2& T_truth_map,
+                                  const MapTruth& truth, const MapEvaluationOptions& options) {
   MapEvaluation result;
   result.options = options;
   result.T_truth_map = T_truth_map;
@@ -320,8 +320,10 @@ MapEvaluation evaluateMap(const ParkingMap& map, const SE2& T_truth_map, const M
   for (Eigen::Vector2d& p : way) p = T_truth_map.inverse() * p;
   for (const GridLayer layer : kGridLayers) {
     if (layer == GridLayer::kDynamic) continue;
-    result.layers[layer] = scoreLayer(rasteriseLayer(map.grid, layer, T_truth_map, truth),
-                                      map.grid.resolution(), way, options.passed_within_m);
+    const Result<LayerScore> score =
+        scoreLayer(map.grid, layer, T_truth_map, truth, way, options.passed_within_m);
+    if (!score) return score.error();
+    result.layers[layer] = *score;
   }
   return result;
 }

@@ -104,7 +104,8 @@ struct MapEvaluation {
 /// instant, over the ground. Fails where the reference does not cover the instant.
 Result<SE3> placeByFirstPose(TimeNs t_ns, const SE3& T_map_vehicle, const Trajectory& driven);
 
-MapEvaluation evaluateMap(const ParkingMap& map, const SE2& T_truth_map, const MapTruth& truth,
-                          const MapEvaluationOptions& options = {});
+/// Fails where cells of the map lie too far apart to be compared, as a stray one far away.
+Result<MapEvaluation> evaluateMap(const ParkingMap& map, const SE2& T_truth_map,
+                                  const MapTruth& truth, const MapEvaluationOptions& options = {});
 
 }  // namespace parkade

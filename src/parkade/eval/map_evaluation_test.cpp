@@ -82,11 +82,15 @@ ParkingMap perfectMap(const MapTruth& truth, const SE2& T_truth_map) {
   return map;
 }
 
+MapEvaluation evaluated(const ParkingMap& map, const SE2& T_truth_map, const MapTruth& truth) {
+  return evaluateMap(map, T_truth_map, truth).value();
+}
+
 const SE2 kPlace(0.3, {4.0, -2.0});
 
 TEST(MapEvaluation, PerfectMapHasPerfectScores) {
   const MapTruth truth = rowTruth(4);
-  const MapEvaluation e = evaluateMap(perfectMap(truth, kPlace), kPlace, truth);
+  const MapEvaluation e = evaluated(perfectMap(truth, kPlace), kPlace, truth);
   EXPECT_EQ(e.slots.passed, 4);
   EXPECT_EQ(e.slots.found, 4);
   EXPECT_EQ(e.slots.told, 4);
@@ -112,7 +116,7 @@ TEST(MapEvaluation, SlotHalfwayBetweenMarkersMayHaveEitherZone) {
   // As far from the middle slot as A1 is.
   truth.objects.push_back({SemanticClass::kZoneMarker, {7.5, 7.5, 1.7}, "A2", {}, 4});
   for (MapSlot& slot : map.slots) slot.zone = "A2";
-  EXPECT_EQ(evaluateMap(map, kPlace, truth).slots.zones_right, 2);  // not the first
+  EXPECT_EQ(evaluated(map, kPlace, truth).slots.zones_right, 2);  // not the first
 }
 
 TEST(MapEvaluation, TellsHowFarCornersAreOffAndWhatAFitLeaves) {
@@ -121,7 +125,7 @@ TEST(MapEvaluation, TellsHowFarCornersAreOffAndWhatAFitLeaves) {
   for (MapSlot& slot : map.slots) {
     for (Eigen::Vector2d& corner : slot.corners) corner += Eigen::Vector2d(0.03, 0.04);
   }
-  const MapEvaluation e = evaluateMap(map, kPlace, truth);
+  const MapEvaluation e = evaluated(map, kPlace, truth);
   EXPECT_EQ(e.slots.found, 4);
   EXPECT_NEAR(e.slots.entrance_error.median, 0.05, 1e-9);
   EXPECT_NEAR(e.slots.fitted_entrance_error.max, 0.0, 1e-9);
@@ -139,7 +143,7 @@ TEST(MapEvaluation, CountsMissedWrongAndRepeatedSlots) {
   invented.id = 51;
   for (Eigen::Vector2d& corner : invented.corners) corner.y() -= 11.0;
   map.slots.push_back(invented);
-  const MapEvaluation e = evaluateMap(map, SE2(), truth);
+  const MapEvaluation e = evaluated(map, SE2(), truth);
   EXPECT_EQ(e.slots.found, 5);
   EXPECT_EQ(e.slots.passed, 6);
   EXPECT_THAT(e.missed, testing::ElementsAre(2));
@@ -154,7 +158,7 @@ TEST(MapEvaluation, RowShiftedByASlotIsMissedAtItsEndAndWronglyNumbered) {
   for (MapSlot& slot : map.slots) {
     for (Eigen::Vector2d& corner : slot.corners) corner.x() += 2.5;
   }
-  const MapEvaluation e = evaluateMap(map, SE2(), truth);
+  const MapEvaluation e = evaluated(map, SE2(), truth);
   EXPECT_EQ(e.slots.found, 5);
   EXPECT_EQ(e.slots.wrong, 1);
   EXPECT_EQ(e.slots.numbers_right, 0);
@@ -168,7 +172,7 @@ TEST(MapEvaluation, SlotsTurnedRoundAreNotFound) {
   for (MapSlot& slot : map.slots) {
     slot.corners = {slot.corners[2], slot.corners[3], slot.corners[0], slot.corners[1]};
   }
-  EXPECT_EQ(evaluateMap(map, SE2(), truth).slots.found, 0);
+  EXPECT_EQ(evaluated(map, SE2(), truth).slots.found, 0);
 }
 
 TEST(MapEvaluation, WrongAndOpenAvailabilityAndParkedMoversCount) {
@@ -176,11 +180,11 @@ TEST(MapEvaluation, WrongAndOpenAvailabilityAndParkedMoversCount) {
   ParkingMap map = perfectMap(truth, SE2());
   map.slots[0].probability_free = 0.5;
   map.slots[1].probability_free = 0.02;  // free in truth
-  MapEvaluation e = evaluateMap(map, SE2(), truth);
+  MapEvaluation e = evaluated(map, SE2(), truth);
   EXPECT_EQ(e.slots.availability_open, 1);
   EXPECT_EQ(e.slots.availability_right, 2);
   truth.vehicles.push_back({map.slots[1].last_seen_ns, {3.75, 5.5}});  // one stands in it
-  e = evaluateMap(map, SE2(), truth);
+  e = evaluated(map, SE2(), truth);
   EXPECT_EQ(e.slots.availability_right, 3);
 }
 
@@ -188,7 +192,7 @@ TEST(MapEvaluation, OnlyWhatWasPassedIsJudged) {
   MapTruth truth = rowTruth(20);
   const ParkingMap map = perfectMap(rowTruth(4), SE2());
   truth.driven.resize(1);  // never left x = 0
-  const MapEvaluation e = evaluateMap(map, SE2(), truth);
+  const MapEvaluation e = evaluated(map, SE2(), truth);
   EXPECT_EQ(e.slots.passed, 3);  // entrances at 1.25, 3.75 and 6.25 m, 3 m aside
   EXPECT_EQ(e.slots.found, 3);
   EXPECT_EQ(e.slots.told, 3);
@@ -198,13 +202,13 @@ TEST(MapEvaluation, SlotsOutOfSightAreCountedApart) {
   MapTruth truth =
       rowTruth(5);  // the map has seen the floor to x = 12 m, the last one ends at 12.5
   ParkingMap map = perfectMap(rowTruth(4), SE2());
-  MapEvaluation e = evaluateMap(map, SE2(), truth);
+  MapEvaluation e = evaluated(map, SE2(), truth);
   EXPECT_EQ(e.slots.passed, 5);
   EXPECT_EQ(e.slots.in_sight, 4);
   EXPECT_EQ(e.slots.recall, 0.8);
   EXPECT_EQ(e.slots.recall_in_sight, 1.0);
   map.slots.erase(map.slots.begin());
-  e = evaluateMap(map, SE2(), truth);
+  e = evaluated(map, SE2(), truth);
   EXPECT_EQ(e.slots.recall_in_sight, 0.75);
 }
 
@@ -213,7 +217,7 @@ TEST(MapEvaluation, ObjectsOfOtherClassesOrTextsAreWrong) {
   ParkingMap map = perfectMap(truth, SE2());
   map.objects[0].semantic_class = SemanticClass::kStopLine;
   map.objects[1].text = "B1";
-  const MapEvaluation e = evaluateMap(map, SE2(), truth);
+  const MapEvaluation e = evaluated(map, SE2(), truth);
   EXPECT_EQ(e.objects.at(SemanticClass::kArrow).found, 0);
   EXPECT_EQ(e.objects.at(SemanticClass::kStopLine).wrong, 1);
   EXPECT_EQ(e.objects.at(SemanticClass::kZoneMarker).found, 1);
@@ -224,7 +228,7 @@ TEST(MapEvaluation, LayersOffByOneCellAreForgivenByTheTolerantFigureOnly) {
   const MapTruth truth = rowTruth(4);
   const ParkingMap map = perfectMap(truth, SE2());
   const auto iou = [&](double shift) {
-    return evaluateMap(map, SE2(0.0, {shift, 0.0}), truth).layers.at(GridLayer::kParkingLines);
+    return evaluated(map, SE2(0.0, {shift, 0.0}), truth).layers.at(GridLayer::kParkingLines);
   };
   EXPECT_LT(iou(0.05).iou, 0.6);
   EXPECT_GT(iou(0.05).tolerant_iou, 0.98);
@@ -232,10 +236,33 @@ TEST(MapEvaluation, LayersOffByOneCellAreForgivenByTheTolerantFigureOnly) {
   EXPECT_LT(iou(0.2).tolerant_iou, 0.05);
 }
 
+TEST(MapEvaluation, TruthBeyondTheLayersCellsIsNotSeen) {
+  const ParkingMap map = perfectMap(rowTruth(4), SE2());  // to x = 12 m
+  const auto score = [&](const MapTruth& truth) {
+    return evaluated(map, SE2(), truth).layers.at(GridLayer::kParkingLines);
+  };
+  EXPECT_EQ(score(rowTruth(4)).seen, 1.0);
+  EXPECT_NEAR(score(rowTruth(8)).seen, 5.0 / 9.0, 0.01);  // lines from 0 to 10 m of those to 20 m
+  EXPECT_EQ(score(rowTruth(8)).iou, score(rowTruth(4)).iou);
+  EXPECT_EQ(score(rowTruth(8)).tolerant_iou, score(rowTruth(4)).tolerant_iou);
+}
+
+TEST(MapEvaluation, StrayCellFarAwayIsAnErrorAndNoHugePicture) {
+  const MapTruth truth = rowTruth(4);
+  ParkingMap map = perfectMap(truth, SE2());
+  const MapEvaluation e = evaluated(map, SE2(), truth);
+  map.grid.set(GridLayer::kRoadMarkers, {400'000, 400'000}, SemanticClass::kArrow, 3.0F);
+  map.grid.set(GridLayer::kRoadMarkers, {0, 0}, SemanticClass::kArrow, 3.0F);
+  const Result<MapEvaluation> stray = evaluateMap(map, SE2(), truth);
+  ASSERT_FALSE(stray.ok());
+  EXPECT_THAT(stray.error().message, testing::HasSubstr("parkade map check"));
+  EXPECT_FALSE(drawMapErrors(map, truth, e).ok());
+}
+
 TEST(MapEvaluation, EmptyMapScoresNothingAndBreaksNothing) {
   const MapTruth truth = rowTruth(4);
   const ParkingMap map;
-  const MapEvaluation e = evaluateMap(map, SE2(), truth);
+  const MapEvaluation e = evaluated(map, SE2(), truth);
   EXPECT_EQ(e.slots.recall, 0.0);
   EXPECT_EQ(e.slots.precision, 0.0);
   EXPECT_EQ(e.layers.at(GridLayer::kParkingLines).iou, 0.0);
@@ -248,7 +275,7 @@ TEST(MapEvaluation, PictureShowsTheErrorsInTheirColours) {
   const MapTruth truth = rowTruth(4);
   ParkingMap map = perfectMap(truth, SE2());
   map.slots.pop_back();
-  const MapEvaluation e = evaluateMap(map, SE2(), truth);
+  const MapEvaluation e = evaluated(map, SE2(), truth);
   const Result<cv::Mat> picture = drawMapErrors(map, truth, e);
   ASSERT_TRUE(picture.ok());
   int missed = 0;

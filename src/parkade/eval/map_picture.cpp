@@ -103,8 +103,10 @@ Result<cv::Mat> drawMapErrors(const ParkingMap& map, const MapTruth& truth,
   Canvas canvas(map.grid, *bounds, kMargin);
   const SE2 T_map_truth = evaluation.T_truth_map.inverse();
   for (const GridLayer layer : {GridLayer::kParkingLines, GridLayer::kRoadMarkers}) {
-    drawLayer(rasteriseLayer(map.grid, layer, evaluation.T_truth_map, truth),
-              layer == GridLayer::kParkingLines, canvas);
+    const Result<LayerRaster> raster =
+        rasteriseLayer(map.grid, layer, evaluation.T_truth_map, truth);
+    if (!raster) return raster.error();
+    drawLayer(*raster, layer == GridLayer::kParkingLines, canvas);
   }
   for (std::size_t i = 1; i < truth.driven.size(); ++i) {
     const auto at = [&](std::size_t k) -> Eigen::Vector2d {

@@ -5,10 +5,12 @@
 #include <fmt/core.h>
 
 #include <cstdint>
+#include <new>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "parkade/io/file.hpp"
@@ -83,27 +85,50 @@ Result<std::string> readImageBytes(const std::string& path) {
   return bytes;
 }
 
+// IHDR comes first in a PNG, with width and height in front (11.2.2).
+Status checkPngSize(std::string_view bytes) {
+  constexpr std::size_t kWidth = 16;
+  if (bytes.size() < kWidth + 8 || bytes.substr(12, 4) != "IHDR") return {};
+  std::int64_t size[2] = {0, 0};
+  for (std::size_t i = 0; i < 8; ++i) {
+    size[i / 4] = size[i / 4] << 8 | static_cast<std::uint8_t>(bytes[kWidth + i]);
+  }
+  return checkImageSize(size[0], size[1]);
+}
+
 // A PNG in colour is turned gray here: decoding it twice for both would take as long again.
-Result<cv::Mat> decode(const std::string& bytes, const std::string& path, bool gray) {
+Result<cv::Mat> decodeBytes(const std::string& bytes, bool gray) {
   const bool png = isPng(bytes);
-  if (!png) {
+  if (png) {
+    if (const Status fits = checkPngSize(bytes); !fits) return fits.error();
+  } else {
     Result<std::optional<cv::Mat>> image = decodeJpeg(bytes, gray);
-    if (!image) {
-      return at(path, fmt::format("the picture cannot be decoded: {}", image.error().message));
-    }
+    if (!image) return image.error();
     if (*image) return std::move(**image);
   }
   const int channels = gray ? (png ? cv::IMREAD_ANYCOLOR : cv::IMREAD_GRAYSCALE) : cv::IMREAD_COLOR;
+  // A header over the bytes; imdecode only reads them.
+  const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8UC1,
+                    const_cast<char*>(bytes.data()));  // NOLINT
+  const cv::Mat image = cv::imdecode(raw, channels | cv::IMREAD_IGNORE_ORIENTATION);
+  if (image.empty()) return Error{"the file is corrupt"};
+  return gray ? grayOf(image) : image;
+}
+
+// What a decoder throws, as where memory does not suffice, is an error as well.
+template <class Decode>
+std::invoke_result_t<Decode> guarded(const std::string& path, const Decode& decode) {
+  std::string reason;
   try {
-    // A header over the bytes; imdecode only reads them.
-    const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8UC1,
-                      const_cast<char*>(bytes.data()));  // NOLINT
-    const cv::Mat image = cv::imdecode(raw, channels | cv::IMREAD_IGNORE_ORIENTATION);
-    if (image.empty()) return at(path, "the picture cannot be decoded: the file is corrupt");
-    return gray ? grayOf(image) : image;
+    std::invoke_result_t<Decode> result = decode();
+    if (result) return result;
+    reason = result.error().message;
   } catch (const cv::Exception& error) {
-    return at(path, fmt::format("the picture cannot be decoded: {}", error.err));
+    reason = error.err;
+  } catch (const std::bad_alloc&) {
+    reason = "memory does not suffice";
   }
+  return at(path, fmt::format("the picture cannot be decoded: {}", reason));
 }
 
 }  // namespace
@@ -125,17 +150,19 @@ Status checkImageBytes(std::string_view bytes) {
 Result<cv::Mat> readImage(const std::string& path, bool gray) {
   const Result<std::string> bytes = readImageBytes(path);
   if (!bytes) return bytes.error();
-  return decode(*bytes, path, gray);
+  return guarded(path, [&] { return decodeBytes(*bytes, gray); });
 }
 
 Result<ImageAndGray> readImageAndGray(const std::string& path) {
   const Result<std::string> bytes = readImageBytes(path);
   if (!bytes) return bytes.error();
-  Result<cv::Mat> image = decode(*bytes, path, false);
-  if (!image) return image.error();
-  Result<cv::Mat> gray = isPng(*bytes) ? grayOf(*image) : decode(*bytes, path, true);
-  if (!gray) return gray.error();
-  return ImageAndGray{std::move(*image), std::move(*gray)};
+  return guarded(path, [&]() -> Result<ImageAndGray> {
+    Result<cv::Mat> image = decodeBytes(*bytes, false);
+    if (!image) return image.error();
+    Result<cv::Mat> gray = isPng(*bytes) ? grayOf(*image) : decodeBytes(*bytes, true);
+    if (!gray) return gray.error();
+    return ImageAndGray{std::move(*image), std::move(*gray)};
+  });
 }
 
 Result<std::string> encodeImage(const cv::Mat& image, const ImageEncoding& encoding) {

@@ -24,8 +24,8 @@ struct ImageEncoding {
 Status checkImageBytes(std::string_view bytes);
 
 /// The picture as CV_8UC1 (gray) or CV_8UC3 (BGR). Fails, naming the file, where it is missing, cut
-/// off or cannot be decoded. An EXIF orientation is not applied: the calibration holds for the
-/// sensor's rows and columns.
+/// off, cannot be decoded or tells more than 2^27 pixels. An EXIF orientation is not applied: the
+/// calibration holds for the sensor's rows and columns.
 Result<cv::Mat> readImage(const std::string& path, bool gray);
 
 /// CV_8UC1 of a CV_8UC1 or CV_8UC3 (BGR) picture; shares memory with one that is gray.

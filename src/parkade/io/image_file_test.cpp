@@ -92,6 +92,35 @@ TEST(ImageFile, TellsWhatIsWrongWithADamagedJpeg) {
               AllOf(HasSubstr("a.jpg: the picture cannot be decoded"), HasSubstr("77")));
 }
 
+TEST(ImageFile, ADamagedPictureDoesNotSpoilTheNext) {
+  const TemporaryFolder folder;
+  const std::string whole = *encodeImage(noise(CV_8UC3), {});
+  std::string damaged = whole;
+  damaged[damaged.find("\xFF\xC0") + 4] = 77;
+  const std::string a = folder.write("a.jpg", damaged);
+  const std::string b = folder.write("b.jpg", whole);
+  EXPECT_FALSE(readImage(a, false).ok());
+  EXPECT_TRUE(readImage(b, false).ok());
+}
+
+// 60,000 x 60,000 pixels would take 11 GB.
+TEST(ImageFile, RefusesSizesThatOnlyACorruptHeaderTells) {
+  const TemporaryFolder folder;
+  std::string jpeg = *encodeImage(noise(CV_8UC3), {});
+  const std::size_t frame = jpeg.find("\xFF\xC0");
+  ASSERT_NE(frame, std::string::npos);
+  jpeg.replace(frame + 5, 4, "\xEA\x60\xEA\x60");
+  std::string png = *encodeImage(noise(CV_8UC3), {true, 92, 3});
+  png.replace(16, 8, std::string("\0\0\xEA\x60\0\0\xEA\x60", 8));
+  for (const std::string& path : {folder.write("a.jpg", jpeg), folder.write("a.png", png)}) {
+    const auto refused = AllOf(HasSubstr(path), HasSubstr("60000 x 60000 pixels"));
+    EXPECT_THAT(readImage(path, true).error().message, refused);
+    EXPECT_THAT(readImageAndGray(path).error().message, refused);
+  }
+  EXPECT_TRUE(checkImageSize(1 << 14, 1 << 13).ok());
+  EXPECT_FALSE(checkImageSize(1 << 14, (1 << 13) + 1).ok());
+}
+
 TEST(ImageFile, FindsEveryCutOffFile) {
   const TemporaryFolder folder;
   for (const bool png : {false, true}) {
