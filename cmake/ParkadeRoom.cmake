@@ -62,6 +62,11 @@ function(parkade_room NAME)
   set_property(GLOBAL APPEND PROPERTY PARKADE_ROOMS ${NAME})
   target_include_directories(${TARGET} ${SCOPE} $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/src>
                                                 $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_features(${TARGET} ${SCOPE} cxx_std_20)
+  if(PARKADE_NATIVE)
+    # Whoever uses the installed library must agree with it on Eigen's alignment.
+    target_compile_options(${TARGET} ${SCOPE} $<INSTALL_INTERFACE:-march=native>)
+  endif()
   foreach(DEP IN LISTS ROOM_DEPS)
     if(TARGET parkade_${DEP})
       set(DEP parkade::${DEP})
@@ -88,6 +93,6 @@ function(parkade_test NAME)
   else()
     set(LIMIT_S 300)
   endif()
-  gtest_discover_tests(${NAME} DISCOVERY_MODE PRE_TEST
+  gtest_discover_tests(${NAME} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
                        PROPERTIES LABELS "${TEST_LABEL}" TIMEOUT ${LIMIT_S})
 endfunction()

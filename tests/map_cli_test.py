@@ -121,6 +121,7 @@ class MapTest(unittest.TestCase):
         result = parkade_map("merge", self.map, later, "--out", out)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("6 slots (6 seen again, 0 new", result.stdout)
+        self.assertIn("2 objects (2 seen again, 0 new)\n", result.stdout)
         self.assertEqual(parkade_map("check", out).returncode, 0)
         # A map of another world is refused, and what was written before stays.
         with sqlite3.connect(later) as database:

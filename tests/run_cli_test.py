@@ -277,9 +277,11 @@ class RunEurocTest(unittest.TestCase):
         self.assertIn(b"source:", now["config.yaml"])
 
     def interrupt(self, out, *more):
+        # A shell's background jobs ignore interruptions by the keyboard.
         process = subprocess.Popen(
             [PARKADE, "run", EUROC, "--out", out, "--real-time", *more],
             stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
         )  # fmt: skip
         # The run itself has begun when it tells its progress.
         process.stderr.readline()

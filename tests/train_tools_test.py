@@ -1,10 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The Parkade authors
 # SPDX-License-Identifier: Apache-2.0
-"""Tests tools/train: its classes are the program's, its written-out gradient is the true one."""
+"""Tests tools/train: its classes are the program's, its written-out gradient is the true one. And that
+tools can be run directly, and refuse what they cannot do before they begin."""
 
+import multiprocessing
+import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -22,6 +26,61 @@ try:
     from torch.nn import functional as F
 except ImportError:
     torch = None
+
+
+def run(*command):
+    return subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=120)
+
+
+def train_tool(name, *arguments):
+    return run(sys.executable, SOURCE / "tools/train" / name, *arguments)
+
+
+class ToolsTest(unittest.TestCase):
+    def test_what_names_its_interpreter_can_be_run(self):
+        files = [SOURCE / name for name in ("demo", "test", ".ci/run")]
+        files += [path for path in (SOURCE / "tools").rglob("*") if path.is_file()]
+        scripts = [path for path in files if path.read_bytes()[:2] == b"#!"]
+        self.assertIn(SOURCE / "tools/train/train.py", scripts)
+        self.assertEqual([str(path) for path in scripts if not os.access(path, os.X_OK)], [])
+
+    def test_check_format_needs_gits_list(self):
+        with tempfile.TemporaryDirectory() as folder:
+            tools = pathlib.Path(folder) / "tools"
+            tools.mkdir()
+            shutil.copy(SOURCE / "tools/check_format.sh", tools)
+            for arguments in ([], ["--fix"]):
+                result = run(tools / "check_format.sh", *arguments)
+                self.assertEqual(result.returncode, 1)
+                self.assertIn("git lists no files", result.stderr)
+
+    def test_install_deps_tells_its_arguments(self):
+        tool = SOURCE / "tools/install_deps.sh"
+        for arguments in (["--list", "--ci"], ["--ci", "--list"]):
+            self.assertIn("clang-format", run(tool, *arguments).stdout.split())
+        self.assertNotIn("clang-format", run(tool, "--list").stdout.split())
+        self.assertIn("usage:", run(tool, "--help").stdout)
+        result = run(tool, "--list", "--all")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("--all", result.stderr)
+        self.assertIn("usage:", result.stderr)
+        self.assertEqual(result.stdout, "")
+
+    def test_make_data_counts_failures(self):
+        with tempfile.TemporaryDirectory() as folder:
+            result = train_tool("make_data.py", "--program", "false", "--out", folder, "--garages", "5-6")
+            self.assertEqual(result.returncode, 1)
+            self.assertIn("garage 6: exit code 1", result.stdout)
+            self.assertIn("2 of the garages failed", result.stderr)
+            result = train_tool("make_data.py", "--program", "true", "--out", folder, "--garages", "5-6")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            for garages in ("5", "6-5", "a-b", "5000-5001"):
+                result = train_tool("make_data.py", "--program", "true", "--out", folder, "--garages", garages)
+                self.assertEqual(result.returncode, 2)
+                self.assertIn("error: ", result.stderr)
+            result = train_tool("make_data.py", "--program", f"{folder}/none", "--out", folder)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn("no such program", result.stderr)
 
 
 class ClassesTest(unittest.TestCase):
@@ -133,6 +192,91 @@ class LossTest(unittest.TestCase):
             after = fold_batch_norm(network)(picture)
         self.assertEqual(list(before.shape), [2, 28, 32, 48])
         self.assertLess(float((before - after).abs().max()), 1e-4)
+
+    def test_each_bev_network_is_its_own(self):
+        """Those that come with Parkade fit each into its own; so do states of when both had one name."""
+        from network import make_network, name_of
+        from warm_start import load
+
+        models = {"bev": "bev_segmentation.onnx", "bev-deep": "bev_segmentation_deep.onnx"}
+        sizes = {}
+        with tempfile.TemporaryDirectory() as folder:
+            for name, model in models.items():
+                network = make_network(name, 15)
+                sizes[name] = sum(p.numel() for p in network.parameters())
+                network.load_state_dict(load(str(SOURCE / "models" / model), network))
+                for said in {name, "bev"}:
+                    self.assertEqual(name_of({"name": said, "average": network.state_dict()}), name)
+                torch.save({"average": network.state_dict()}, f"{folder}/{name}.pt")
+            self.assertAlmostEqual(sizes["bev"] / 1e6, 0.63, delta=0.01)
+            self.assertAlmostEqual(sizes["bev-deep"] / 1e6, 1.25, delta=0.01)
+            deep, plain = make_network("bev-deep", 15), make_network("bev", 15)
+            for path in (f"{folder}/bev.pt", str(SOURCE / "models" / models["bev"])):
+                deep.load_state_dict(load(path, deep))
+            for path in (f"{folder}/bev-deep.pt", str(SOURCE / "models" / models["bev-deep"])):
+                with self.assertRaisesRegex(SystemExit, "another network"):
+                    load(path, plain)
+            deep_run = pathlib.Path(folder) / "run"
+            deep_run.mkdir()
+            torch.save({"name": "bev", "average": deep.state_dict()}, deep_run / "state.pt")
+            data = pathlib.Path(folder) / "g0001"
+            data.mkdir()
+            (data / "0_bev_labels.png").touch()
+            result = train_tool("train.py", "--data", folder, "--network", "bev", "--out", deep_run)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn("is of bev-deep", result.stderr)
+
+    def test_training_tells_missing_samples(self):
+        with tempfile.TemporaryDirectory() as folder:
+            empty, out = pathlib.Path(folder), pathlib.Path(folder) / "out"
+            (empty / "g0013").mkdir()
+            (empty / "g0013/0_bev_labels.png").touch()  # for validation
+            for data in (empty, empty / "none"):
+                for tool, more in (("train.py", ["--network", "bev"]), ("train_text.py", [])):
+                    result = train_tool(tool, "--data", data, "--out", out, *more)
+                    self.assertEqual(result.returncode, 2, result.stderr)
+                    self.assertIn(f"--data {data}", result.stderr)
+                    self.assertFalse(out.exists())
+            result = train_tool("train_text.py")
+            self.assertEqual(result.returncode, 2)
+            self.assertIn("--out", result.stderr)
+
+    def test_training_ends_with_the_process_that_makes_batches(self):
+        from train import next_batch
+
+        batches = multiprocessing.Queue(4)
+        maker = multiprocessing.Process(target=batches.put, args=("a batch",))
+        maker.start()
+        self.assertEqual(next_batch(batches, maker), "a batch")
+        maker.join()
+        with self.assertRaisesRegex(SystemExit, "has ended"):
+            next_batch(batches, maker, 0.01)
+
+    def test_export_replaces_a_model_only_by_one_that_was_compared(self):
+        from text_network import TextNetwork
+
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            torch.save({"average": TextNetwork().state_dict()}, folder / "text.pt")
+            model, description = folder / "reader.onnx", folder / "reader.yaml"
+            model.write_text("the one before")
+            names = sorted(os.listdir(folder))
+
+            def export(check):
+                return train_tool("export_text.py", folder / "text.pt", "--out", folder / "reader",
+                                  "--check", check)
+
+            result = export(folder / "none")
+            self.assertEqual(result.returncode, 2)
+            self.assertIn("no such program", result.stderr)
+            self.assertEqual(export("false").returncode, 1)
+            self.assertEqual(sorted(os.listdir(folder)), names)
+            self.assertEqual(model.read_text(), "the one before")
+            result = export("none")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertGreater(model.stat().st_size, 100000)
+            self.assertIn("network: reader.onnx\n", description.read_text())
+            self.assertEqual(sorted(os.listdir(folder)), ["reader.onnx", "reader.yaml", "text.pt"])
 
     def test_warm_start_from_an_exported_network(self):
         """What is loaded computes what the file computes, before batch norms settle and after."""

@@ -5,13 +5,22 @@
 # Fails where a C++ source is not as clang-format writes it, or lacks its two SPDX lines. --fix formats.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-mapfile -t sources < <(git ls-files '*.hpp' '*.cpp')
+# A list from git that is empty, or that git fails to give, would pass without a look.
+list() {
+  local files
+  files=$(git ls-files -- "$@") && [ -n "$files" ] && printf '%s\n' "$files" && return
+  echo "check_format: git lists no files here" >&2
+  return 1
+}
+cpp=$(list '*.hpp' '*.cpp')
+mapfile -t sources <<<"$cpp"
 if [ "${1:-}" = "--fix" ]; then
   clang-format -i "${sources[@]}"
   exit 0
 fi
 clang-format --dry-run --Werror "${sources[@]}"
-mapfile -t licensed < <(git ls-files '*.hpp' '*.cpp' '*.py' '*.sh' '*.cmake' '*CMakeLists.txt' demo test .ci/run)
+all=$(list '*.hpp' '*.cpp' '*.py' '*.sh' '*.cmake' '*CMakeLists.txt' demo test .ci/run)
+mapfile -t licensed <<<"$all"
 failed=0
 for file in "${licensed[@]}"; do
   if ! head -n 5 "$file" | grep -q 'SPDX-License-Identifier: Apache-2.0'; then

@@ -7,8 +7,9 @@
 # Usage: tools/demo.sh OUT
 # DEMO_SECONDS=N sets how long the drive is (default 30).
 set -euo pipefail
-cd "$(dirname "$0")/.."
-out=${1:?usage: tools/demo.sh OUT}
+root=$(cd "$(dirname "$0")/.." && pwd -P)
+out=$(realpath -m --relative-base="$root" -- "${1:?usage: tools/demo.sh OUT}")
+cd "$root"
 seconds=${DEMO_SECONDS:-30}
 parkade=build/release/parkade
 mkdir -p "$out"

@@ -3,7 +3,10 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Installs the Debian 12 packages that Parkade is built from. Asks apt nothing when all are there;
-# asks the user nothing ever. With --list it only prints the packages.
+# asks the user nothing ever.
+# Usage: tools/install_deps.sh [--ci] [--list]
+#   --ci     also what CI alone needs
+#   --list   only print the packages
 set -euo pipefail
 
 packages=(
@@ -19,11 +22,28 @@ packages=(
 # Only CI needs these.
 ci_packages=(clang-format)
 
-if [ "${1:-}" = "--ci" ]; then
+usage="usage: tools/install_deps.sh [--ci] [--list]"
+ci=false
+list=false
+for argument in "$@"; do
+  case "$argument" in
+    --ci) ci=true ;;
+    --list) list=true ;;
+    -h | --help)
+      echo "$usage"
+      exit 0
+      ;;
+    *)
+      echo "install_deps: unknown argument: $argument" >&2
+      echo "$usage" >&2
+      exit 2
+      ;;
+  esac
+done
+if $ci; then
   packages+=("${ci_packages[@]}")
-  shift
 fi
-if [ "${1:-}" = "--list" ]; then
+if $list; then
   printf '%s\n' "${packages[@]}"
   exit 0
 fi

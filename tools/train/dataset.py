@@ -12,6 +12,17 @@ from torch.nn import functional as F
 from classes import IGNORE, NETWORKS, PX_PER_LABEL, label_table
 
 
+def label_files(folder, network, wanted):
+    """Paths of the label images of a folder's garages that wanted(garage_seed) says yes to."""
+    pattern = {"bev": "*_bev_labels.png", "raw": "*_raw?_labels.png"}[network]
+    return [path for path in sorted(glob.glob(os.path.join(folder, "g*", pattern)))
+            if wanted(garage_of(path))]
+
+
+def garage_of(path):
+    return int(os.path.basename(os.path.dirname(path))[1:])
+
+
 class Samples:
     """Pictures and labels of a folder; refresh() takes in what was written since."""
 
@@ -25,10 +36,8 @@ class Samples:
         self.refresh()
 
     def refresh(self):
-        pattern = {"bev": "*_bev_labels.png", "raw": "*_raw?_labels.png"}[self.network]
-        for path in sorted(glob.glob(os.path.join(self.folder, "g*", pattern))):
-            garage = int(os.path.basename(os.path.dirname(path))[1:])
-            if path in self.known or not self.wanted(garage):
+        for path in label_files(self.folder, self.network, self.wanted):
+            if path in self.known:
                 continue
             try:
                 image, labels = self._read(path)
@@ -38,7 +47,7 @@ class Samples:
             labels = self.table[labels]
             self.images.append(image)
             self.labels.append(labels)
-            self.garages.append(garage)
+            self.garages.append(garage_of(path))
             self.counts.append(np.bincount(labels.ravel(), minlength=256)[: self.num_classes])
         if self.counts:
             self.has = np.array(self.counts) > 30

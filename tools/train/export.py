@@ -5,11 +5,13 @@
 
     tools/train/export.py RUN/state.pt --out models/bev_segmentation
 
-Writes OUT.onnx and OUT.yaml. The comparison runs build/release/parkade_onnx_check (built with the
+Writes OUT.onnx and OUT.yaml where the numbers agree. The comparison runs build/release/parkade_onnx_check (built with the
 tests) on random pictures; --check none skips it.
 """
 import argparse
+import contextlib
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -21,22 +23,24 @@ import torch
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from classes import NETWORKS, PX_PER_LABEL  # noqa: E402
-from network import MEAN, SCALE, fold_batch_norm, make_network  # noqa: E402
+from network import (MEAN, PICTURES, SCALE, fold_batch_norm, make_network,  # noqa: E402
+                     name_of)
 
 METRES_PER_PX = {"bev": 0.04}
 
 
 def load(path):
     state = torch.load(path, map_location="cpu")
-    network = make_network(state["name"], len(state["classes"]))
+    name = name_of(state)
+    network = make_network(name, len(state["classes"]))
     network.load_state_dict(state["average"])
-    if state["classes"] != NETWORKS[state["name"]]["classes"]:
+    if state["classes"] != NETWORKS[PICTURES[name]]["classes"]:
         sys.exit(f"{path}: trained for other classes than classes.py lists")
     return fold_batch_norm(network.eval()), state
 
 
-def export(network, name, path):
-    width, height = NETWORKS[name]["size"]
+def export(network, pictures, path):
+    width, height = NETWORKS[pictures]["size"]
     picture = torch.zeros(1, 3, height, width)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -60,25 +64,41 @@ def inline_constants(graph):
         graph.node.remove(node)
 
 
-def write_class_map(name, path):
-    width, height = NETWORKS[name]["size"]
+def write_class_map(pictures, model, path):
+    """model: the file that the class map at path is of."""
+    width, height = NETWORKS[pictures]["size"]
     lines = [
         "# What the network takes and gives (docs/networks.md). Written by tools/train/export.py.",
-        f"network: {os.path.basename(path)}.onnx",
+        f"network: {os.path.basename(model)}",
         "input:",
         f"  width: {width}",
         f"  height: {height}",
-        f"  any_size: {'true' if name in METRES_PER_PX else 'false'}",
+        f"  any_size: {'true' if pictures in METRES_PER_PX else 'false'}",
         "  channels: rgb",
         f"  mean: {MEAN:g}",
         f"  scale: {SCALE:.9g}",
     ]
-    if name in METRES_PER_PX:
-        lines.append(f"  metres_per_px: {METRES_PER_PX[name]}")
+    if pictures in METRES_PER_PX:
+        lines.append(f"  metres_per_px: {METRES_PER_PX[pictures]}")
         lines.append("unknown_is_unseen: true")
-    lines.append("classes: [" + ", ".join(NETWORKS[name]["classes"]) + "]")
-    with open(path + ".yaml", "w") as file:
+    lines.append("classes: [" + ", ".join(NETWORKS[pictures]["classes"]) + "]")
+    with open(path, "w") as file:
         file.write("\n".join(lines) + "\n")
+
+
+@contextlib.contextmanager
+def replacing(*paths):
+    """Gives a path beside each to write to. The files take their places at the end; where something
+    fails before, they are removed, and what was there stays."""
+    parts = [path + ".part" for path in paths]
+    try:
+        yield parts
+        for part, path in zip(parts, paths):
+            os.replace(part, path)
+    finally:
+        for part in parts:
+            if os.path.exists(part):
+                os.remove(part)
 
 
 def compare(network, sizes, onnx_path, program):
@@ -93,10 +113,10 @@ def compare(network, sizes, onnx_path, program):
             with torch.no_grad():
                 expected = network(torch.from_numpy(picture)).numpy()
             found = np.fromfile(files[1], np.float32).reshape(expected.shape)
-            worst = max(worst, float(np.abs(found - expected).max()))
+            worst = np.maximum(worst, np.abs(found - expected).max())  # also tells of NaN
             print(f"{w} x {h}: largest difference {np.abs(found - expected).max():.2g} of logits up "
                   f"to {np.abs(expected).max():.3g}")
-    if worst > 1e-3:
+    if not worst <= 1e-3:
         sys.exit(f"OpenCV and torch differ by {worst:g}")
 
 
@@ -107,19 +127,25 @@ def parse_arguments(doc, state_help):
     parser.add_argument("--out", required=True, help="path without ending")
     parser.add_argument("--check", default="build/release/parkade_onnx_check",
                         help="program that runs the network in OpenCV, or none")
-    return parser.parse_args()
+    a = parser.parse_args()
+    if a.check != "none" and shutil.which(a.check) is None:
+        parser.error(f"--check {a.check}: no such program; it is built with the tests (none: no comparison)")
+    return a
 
 
 def main():
     a = parse_arguments(__doc__, "state.pt of a training")
     network, state = load(a.state)
-    export(network, state["name"], a.out + ".onnx")
-    write_class_map(state["name"], a.out)
-    print(f"{a.out}.onnx: {os.path.getsize(a.out + '.onnx') / 1e6:.2f} MB, step {state['step']}")
-    if a.check != "none":
-        width, height = NETWORKS[state["name"]]["size"]
-        step = 32 * PX_PER_LABEL[state["name"]]
-        compare(network, [(width, height), (width - 2 * step, height - step)], a.out + ".onnx", a.check)
+    pictures = PICTURES[name_of(state)]
+    model = a.out + ".onnx"
+    with replacing(model, a.out + ".yaml") as (new_model, new_map):
+        export(network, pictures, new_model)
+        write_class_map(pictures, model, new_map)
+        if a.check != "none":
+            width, height = NETWORKS[pictures]["size"]
+            step = 32 * PX_PER_LABEL[pictures]
+            compare(network, [(width, height), (width - 2 * step, height - step)], new_model, a.check)
+    print(f"{model}: {os.path.getsize(model) / 1e6:.2f} MB, {name_of(state)}, step {state['step']}")
 
 
 if __name__ == "__main__":

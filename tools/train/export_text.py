@@ -16,7 +16,7 @@ import torch
 from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from export import compare, inline_constants, parse_arguments  # noqa: E402
+from export import compare, inline_constants, parse_arguments, replacing  # noqa: E402
 from text_network import ALPHABET, HEIGHT, MEAN, SCALE, WIDTH, TextNetwork  # noqa: E402
 
 
@@ -29,12 +29,7 @@ def fold(network):
     return network
 
 
-def main():
-    a = parse_arguments(__doc__, "text.pt of a training")
-    network = TextNetwork()
-    network.load_state_dict(torch.load(a.state, map_location="cpu")["average"])
-    network = fold(network.eval())
-    path = a.out + ".onnx"
+def export(network, path):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         torch.onnx.export(network, torch.zeros(1, 3, HEIGHT, WIDTH), path, opset_version=12,
@@ -44,16 +39,31 @@ def main():
     inline_constants(model.graph)
     onnx.checker.check_model(model)
     onnx.save(model, path)
-    with open(a.out + ".yaml", "w") as file:
+
+
+def write_description(model, path):
+    """model: the file that the description at path is of."""
+    with open(path, "w") as file:
         file.write(
             "# What the network takes and gives (docs/networks.md). Written by "
             "tools/train/export_text.py.\n"
-            f"network: {os.path.basename(path)}\n"
+            f"network: {os.path.basename(model)}\n"
             f"input:\n  width: {WIDTH}\n  height: {HEIGHT}\n  mean: {MEAN:g}\n  scale: {SCALE:g}\n"
             f'letters: "{ALPHABET}"\n')
-    print(f"{path}: {os.path.getsize(path) / 1e6:.2f} MB")
-    if a.check != "none":
-        compare(network, [(WIDTH, HEIGHT)], path, a.check)
+
+
+def main():
+    a = parse_arguments(__doc__, "text.pt of a training")
+    network = TextNetwork()
+    network.load_state_dict(torch.load(a.state, map_location="cpu")["average"])
+    network = fold(network.eval())
+    model = a.out + ".onnx"
+    with replacing(model, a.out + ".yaml") as (new_model, new_description):
+        export(network, new_model)
+        write_description(model, new_description)
+        if a.check != "none":
+            compare(network, [(WIDTH, HEIGHT)], new_model, a.check)
+    print(f"{model}: {os.path.getsize(model) / 1e6:.2f} MB")
 
 
 if __name__ == "__main__":

@@ -13,7 +13,10 @@ its seed. Goes on where an earlier call ended. Seeds from 5000 on are kept for t
 import argparse
 import os
 import random
+import re
+import shutil
 import subprocess
+import sys
 import time
 
 
@@ -45,9 +48,15 @@ def main():
     parser.add_argument("--any-letter", action="store_true",
                         help="with --texts: zones begin at a letter drawn for each garage, not at A")
     arguments = parser.parse_args()
-    first, last = (int(text) for text in arguments.garages.split("-"))
+    seeds = re.fullmatch(r"([0-9]+)-([0-9]+)", arguments.garages)
+    first, last = (int(text) for text in seeds.groups()) if seeds else (1, 0)
+    if first > last:
+        parser.error(f"--garages {arguments.garages} is not FIRST-LAST, such as 0-99 or 5-5")
     if last >= 5000:
         parser.error("garage seeds from 5000 on are kept for tests")
+    if shutil.which(arguments.program) is None:
+        parser.error(f"--program {arguments.program}: no such program")
+    failed = 0
     for seed in range(first, last + 1):
         if os.path.exists(os.path.join(arguments.out, f"g{seed:04d}", "done")):
             continue
@@ -65,9 +74,15 @@ def main():
             command += ["--set", f"first_zone={letter}"]
         start = time.time()
         result = subprocess.run(command, capture_output=True, text=True)
-        print(f"garage {seed}: {'ok' if result.returncode == 0 else result.stderr.strip()[-300:]}, "
-              f"{time.time() - start:.0f} s", flush=True)
+        said = "ok"
+        if result.returncode != 0:
+            failed += 1
+            said = f"exit code {result.returncode}: {result.stderr.strip()[-300:]}"
+        print(f"garage {seed}: {said}, {time.time() - start:.0f} s", flush=True)
+    if failed:
+        print(f"{failed} of the garages failed; the same command tries them again", file=sys.stderr)
+    return 1 if failed else 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

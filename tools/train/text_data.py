@@ -153,14 +153,18 @@ NUMBERS_WEIGHT = 3.0  # they are fewer than faces, and read from one view each
 SIGNS_WEIGHT = 8.0  # a hundredth of the faces
 
 
+def text_files(folder):
+    """Those of make_data.py --texts in a folder."""
+    return glob.glob(os.path.join(folder, "g*", "*_texts.csv"))
+
+
 class Crops:
     """Faces, signs and numbers that the simulator drew, straightened by the program. kinds: what they were
     cut out by (parkade bench semantics --texts)."""
 
     def __init__(self, folders, wanted):
         self.patches, self.texts, self.heights, self.distances, self.kinds = [], [], [], [], []
-        for path in sorted(path for folder in folders
-                           for path in glob.glob(os.path.join(folder, "g*", "*_texts.csv"))):
+        for path in sorted(path for folder in folders for path in text_files(folder)):
             if not wanted(int(os.path.basename(os.path.dirname(path))[1:])):
                 continue
             with open(path) as file:

@@ -12,6 +12,7 @@ training are taken in. Garages whose seed ends in 3 are kept for validation.
 import argparse
 import multiprocessing
 import os
+import queue
 import sys
 import time
 
@@ -24,14 +25,18 @@ import torch  # noqa: E402
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from augment import augment  # noqa: E402
 from classes import IGNORE, NETWORKS  # noqa: E402
-from dataset import Samples, as_labelled, cut  # noqa: E402
-from network import full_size, make_network, to_input  # noqa: E402
+from dataset import Samples, as_labelled, cut, label_files  # noqa: E402
+from network import PICTURES, full_size, make_network, name_of, to_input  # noqa: E402
 from scores import Confusion, table  # noqa: E402
 from warm_start import load, settle  # noqa: E402
 
 
 def is_validation(garage):
     return garage % 10 == 3
+
+
+def is_training(garage):
+    return not is_validation(garage)
 
 
 def make_batch(samples, rng, batch, size, network, plain):
@@ -117,18 +122,29 @@ def class_weights(pixels):
     return torch.tensor(weight / (weight * share).sum(), dtype=torch.float32)
 
 
-def keep_making(queue, data, network, seed, batch, size, plain):
+def keep_making(batches, data, network, seed, batch, size, plain):
     """In a process of its own: batches without end, and how often the classes occur."""
     torch.set_num_threads(1)
-    samples = Samples(data, network, lambda garage: not is_validation(garage))
+    samples = Samples(data, network, is_training)
     rng = np.random.default_rng(seed)
     refreshed = time.time()
     while True:
         if time.time() - refreshed > 120:
             samples.refresh()
             refreshed = time.time()
-        queue.put((*make_batch(samples, rng, batch, size, network, plain), samples.pixels,
-                   len(samples.images)))
+        batches.put((*make_batch(samples, rng, batch, size, network, plain), samples.pixels,
+                     len(samples.images)))
+
+
+def next_batch(batches, maker, wait_s=10.0):
+    """What keep_making made next; ends the program where its process, maker, has ended."""
+    while True:
+        try:
+            return batches.get(timeout=wait_s)
+        except queue.Empty:
+            if not maker.is_alive():
+                sys.exit("the process that makes batches has ended "
+                         f"(exit code {maker.exitcode}); what it said stands above")
 
 
 def validate(network, samples, limit):
@@ -168,7 +184,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", required=True)
-    parser.add_argument("--network", choices=list(NETWORKS), required=True)
+    parser.add_argument("--network", choices=list(PICTURES), required=True,
+                        help="bev-deep: bev with residual blocks; raw: of the cameras' views")
     parser.add_argument("--out", required=True)
     parser.add_argument("--steps", type=int, default=10000, help="length of the training [10000]")
     parser.add_argument("--batch", type=int, default=6)
@@ -183,13 +200,17 @@ def main():
     parser.add_argument("--warm-start",
                         help="a state.pt or an exported .onnx whose weights to begin with")
     a = parser.parse_args()
+    pictures = PICTURES[a.network]
+    if not label_files(a.data, pictures, is_training):
+        parser.error(f"--data {a.data}: no pictures of make_data.py to train {a.network} on are there "
+                     "(garages whose seed ends in 3 are for validation)")
     os.makedirs(a.out, exist_ok=True)
     torch.set_num_threads(a.threads)
     torch.manual_seed(a.seed)
-    classes = NETWORKS[a.network]["classes"]
-    size = NETWORKS[a.network]["size"] if a.network == "raw" else (a.crop, a.crop)
+    classes = NETWORKS[pictures]["classes"]
+    size = NETWORKS[pictures]["size"] if pictures == "raw" else (a.crop, a.crop)
 
-    test = Samples(a.data, a.network, is_validation)
+    test = Samples(a.data, pictures, is_validation)
     network = make_network(a.network, len(classes)).to(memory_format=torch.channels_last)
     optimiser = torch.optim.AdamW(network.parameters(), lr=a.rate, weight_decay=1e-3)
     step, spent = 0, 0.0
@@ -197,6 +218,8 @@ def main():
     average = Average(network, 0.998)
     if os.path.exists(path):
         state = torch.load(path)
+        if name_of(state) != a.network:
+            parser.error(f"--network {a.network}: {path}, to go on from, is of {name_of(state)}")
         network.load_state_dict(state["network"])
         optimiser.load_state_dict(state["optimiser"])
         average.state, step, spent = state["average"], state["step"], state["spent"]
@@ -204,8 +227,8 @@ def main():
         network.load_state_dict(load(a.warm_start, network))
         if a.warm_start.endswith(".onnx"):
             rng = np.random.default_rng(a.seed)
-            samples = Samples(a.data, a.network, lambda garage: not is_validation(garage))
-            settle(network, [to_input(make_batch(samples, rng, a.batch, size, a.network, a.plain)[0])
+            samples = Samples(a.data, pictures, is_training)
+            settle(network, [to_input(make_batch(samples, rng, a.batch, size, pictures, a.plain)[0])
                              for _ in range(16)])
         average = Average(network, 0.998)
     log = open(os.path.join(a.out, "log.txt"), "a", buffering=1)
@@ -216,11 +239,11 @@ def main():
 
     say(f"{len(test.images)} validation pictures, "
         f"{sum(p.numel() for p in network.parameters())} parameters, from step {step}")
-    queue = multiprocessing.Queue(4)
-    multiprocessing.Process(
+    batches = multiprocessing.Queue(4)
+    maker = multiprocessing.Process(
         target=keep_making, daemon=True,
-        args=(queue, a.data, a.network, a.seed * 1000003 + step, a.batch, size,
-              a.plain)).start()
+        args=(batches, a.data, pictures, a.seed * 1000003 + step, a.batch, size, a.plain))
+    maker.start()
     last, losses = time.time(), []
     saved = validated = spent
     while step < a.steps:
@@ -228,7 +251,7 @@ def main():
         rate = a.rate * min(1.0, (step + 1) / 200) * (0.5 * (1 + np.cos(np.pi * done)) + 0.005)
         for group in optimiser.param_groups:
             group["lr"] = rate
-        images, labels, pixels, pictures = queue.get()
+        images, labels, pixels, seen = next_batch(batches, maker)
         with torch.autocast("cpu", dtype=torch.bfloat16, enabled=a.bfloat16):
             logits = network(to_input(images))
         loss = SegmentationLoss.apply(logits.float(), torch.as_tensor(labels),
@@ -250,7 +273,7 @@ def main():
                         "name": a.network, "classes": classes})
             test.refresh()
             say(f"step {step}  {spent / 60:.1f} min  loss {np.mean(losses):.3f}  rate {rate:.5f}  "
-                f"{pictures} pictures")
+                f"{seen} pictures")
             losses = []
         if spent - validated > 900 or step == a.steps:
             validated = spent

@@ -19,7 +19,7 @@ import numpy as np  # noqa: E402
 import torch  # noqa: E402
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from text_data import NUMBERS, SIGNS, Crops, augmented, fonts, rendered  # noqa: E402
+from text_data import NUMBERS, SIGNS, Crops, augmented, fonts, rendered, text_files  # noqa: E402
 from text_network import TextNetwork, column_loss, read, sequence_loss, to_input  # noqa: E402
 from warm_start import load, settle  # noqa: E402
 
@@ -100,6 +100,11 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--threads", type=int, default=1)
     a = parser.parse_args()
+    if not a.out and not a.check:
+        parser.error("say --out, the folder for text.pt, or --check")
+    for folder in a.data:
+        if not text_files(folder):
+            parser.error(f"--data {folder}: no texts of make_data.py --texts are there")
     torch.set_num_threads(a.threads)
     torch.manual_seed(a.seed)
     rng = np.random.default_rng(a.seed)

@@ -20,7 +20,9 @@ def load(path, network):
     Of the latter `settle` must find the batch norms' means and spreads before training. Where the
     network is larger (letters or blocks were added), what is new begins anew."""
     if not path.endswith(".onnx"):
-        return grown(torch.load(path)["average"], network.state_dict())
+        stored, fresh = torch.load(path)["average"], network.state_dict()
+        refuse_larger(path, stored, fresh)
+        return grown(stored, fresh)
     import onnx
     from onnx import numpy_helper
 
@@ -29,14 +31,20 @@ def load(path, network):
     return with_idle_norms(path, stored, network)
 
 
+def refuse_larger(path, stored, fresh):
+    """Ends the program where weights by name, of path, do not fit into those of a fresh network."""
+    unknown = [key for key, value in stored.items()
+               if key not in fresh or any(a > b for a, b in zip(value.shape, fresh[key].shape))]
+    if unknown:
+        raise SystemExit(f"{path}: made by another network than this one ({', '.join(unknown)})")
+
+
 def with_idle_norms(path, stored, network):
     """The state dict of a network whose batch norms were folded into the convolutions, as for export:
     what is left of them does nothing. stored: its weights by name; path: where they come from."""
     fresh = network.state_dict()
-    unknown = [key for key, value in stored.items() if not key.endswith(".0.bias") and
-               (key not in fresh or any(a > b for a, b in zip(value.shape, fresh[key].shape)))]
-    if unknown:
-        raise SystemExit(f"{path}: made by another network than this one ({', '.join(unknown)})")
+    refuse_larger(path, {key: value for key, value in stored.items() if not key.endswith(".0.bias")},
+                  fresh)
     before = {key: value for key, value in stored.items() if key in fresh}
     for name, _, norm in blocks_of(network):
         bias = stored.get(f"{name}.0.bias")
