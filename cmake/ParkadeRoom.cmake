@@ -65,7 +65,7 @@ function(parkade_room NAME)
   target_compile_features(${TARGET} ${SCOPE} cxx_std_20)
   if(PARKADE_NATIVE)
     # Whoever uses the installed library must agree with it on Eigen's alignment.
-    target_compile_options(${TARGET} ${SCOPE} $<INSTALL_INTERFACE:-march=native>)
+    target_compile_options(${TARGET} ${SCOPE} $<INSTALL_INTERFACE:$<$<COMPILE_LANGUAGE:CXX>:-march=native>>)
   endif()
   foreach(DEP IN LISTS ROOM_DEPS)
     if(TARGET parkade_${DEP})

@@ -5,8 +5,12 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "parkade/io/file.hpp"
 #include "parkade/io/sequence_test_support.hpp"
 
 // The program itself, where what matters lies in how a command begins or ends.
@@ -56,10 +60,23 @@ TEST(Program, InfoWritesJsonOfAPathThatIsNoUtf8) {
 
 TEST(Program, BevRepairsStampsWhereAsked) {
   const test::TemporaryFolder folder;
-  const std::string out = " --out '" + folder.path("out") + "' --tolerate-stamps 2>&1";
-  const Ended ended = runShell("bev '" + folder.path("nowhere") + "'" + out);
-  EXPECT_EQ(ended.code, 1);  // 2: an unknown option
-  EXPECT_THAT(ended.text, HasSubstr("nowhere"));
+  test::writeEvents(folder.path("drive"), test::smallEvents());
+  const std::string readings = folder.path("drive/mav0/imu0/data.csv");
+  std::istringstream lines(test::bytesOf(readings));
+  std::vector<std::string> rows;
+  for (std::string line; std::getline(lines, line);) rows.push_back(line);
+  ASSERT_GT(rows.size(), 4U);
+  std::swap(rows[rows.size() - 2], rows[rows.size() - 1]);
+  std::string swapped;
+  for (const std::string& row : rows) swapped += row + "\n";
+  ASSERT_TRUE(writeFileAtomic(readings, swapped).ok());
+  const std::string bev =
+      "bev '" + folder.path("drive") + "' --out '" + folder.path("out") + "' 2>&1";
+  const Ended refused = runShell(bev);
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.text, HasSubstr("--tolerate-stamps"));
+  const Ended repaired = runShell("bev --tolerate-stamps" + bev.substr(3));
+  EXPECT_THAT(repaired.text, Not(HasSubstr("--tolerate-stamps")));
 }
 
 TEST(Program, BevWithoutAPictureFails) {

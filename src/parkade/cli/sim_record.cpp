@@ -148,7 +148,9 @@ class Recorder {
     SequenceWriterOptions options;
     options.image_format = options_.gray_png ? "gray-png" : "jpg";
     options.resume = resume;
-    options.fingerprint = specText(simulation_->spec()) + options.image_format;
+    // Other builds draw the same spec otherwise: half a recording of theirs is none of this one's.
+    constexpr const char* kDrawing = " drawing 2";
+    options.fingerprint = specText(simulation_->spec()) + options.image_format + kDrawing;
     Result<std::unique_ptr<SequenceWriter>> writer =
         SequenceWriter::create(options_.out, told_rig_, options);
     if (!writer) return writer.error();

@@ -119,6 +119,7 @@ TEST(ImageFile, RefusesSizesThatOnlyACorruptHeaderTells) {
   }
   EXPECT_TRUE(checkImageSize(1 << 14, 1 << 13).ok());
   EXPECT_FALSE(checkImageSize(1 << 14, (1 << 13) + 1).ok());
+  EXPECT_FALSE(checkImageSize(0xFFFFFFFF, 0xFFFFFFFF).ok());
 }
 
 TEST(ImageFile, FindsEveryCutOffFile) {

@@ -26,7 +26,7 @@ Error failed(Decoder& decoder) {
 }  // namespace
 
 Status checkImageSize(std::int64_t width, std::int64_t height) {
-  if (width * height <= kMostImagePixels) return {};
+  if (height <= 0 || width <= kMostImagePixels / height) return {};
   return Error{fmt::format("its header tells {} x {} pixels, more than {}", width, height,
                            kMostImagePixels)};
 }

@@ -25,7 +25,8 @@ struct Texts {
   Comparison names;    // of zone markers and guide signs
   Comparison repeats;  // of arrows and limits: they say the same all over a garage
   [[nodiscard]] bool contradict(const PlaceRules& rules) const {
-    return names.contradicts(rules) || repeats.contradicts(rules);
+    const Comparison all{names.compared + repeats.compared, names.wrong + repeats.wrong};
+    return names.contradicts(rules) || all.contradicts(rules);
   }
   [[nodiscard]] bool suffice(const PlaceRules& rules) const {
     return rules.enough_texts > 0 && names.compared - names.wrong >= rules.enough_texts;

@@ -67,7 +67,7 @@ struct PlaceRules {
 };
 
 /// Whether texts refuse a place: where landmarks of both stand together, more than wrong_texts of
-/// what zone markers and guide signs say differs, or of what arrows and limits do.
+/// what zone markers and guide signs say differs, or of what these, arrows and limits do.
 bool textsContradict(const SemanticFrame& frame, const Submap& submap, const SE2& T_map_vehicle,
                      const PlaceRules& rules);
 /// Whether enough_texts of zone markers and guide signs agree; arrows and limits say the same all

@@ -197,6 +197,7 @@ bool showsFloorAt(const MapObject& object, const LayeredGrid& grid,
                   const LayeredGrid::Bounds& bounds) {
   constexpr double kHalf = 0.25;  // m, of the box that stands for an outline
   constexpr int kLeastKnown = 20;
+  constexpr double kSeen = 0.6;
   constexpr double kFloor = 0.9;
   std::vector<Vector2d> outline = object.outline;
   if (outline.size() < 3) {
@@ -215,6 +216,9 @@ bool showsFloorAt(const MapObject& object, const LayeredGrid& grid,
   if (!(low.x() <= high.x() && low.y() <= high.y())) return false;
   const Eigen::Vector2i from = grid.cellOf(low);
   const Eigen::Vector2i to = grid.cellOf(high);
+  // A strip beside what stands on it now is bare whatever is painted there.
+  const double all = std::abs(signedArea(outline)) / (grid.resolution() * grid.resolution());
+  const int enough = std::max(kLeastKnown, static_cast<int>(kSeen * all));
   int known = 0;
   int floor = 0;
   for (int y = from.y(); y <= to.y(); ++y) {
@@ -225,7 +229,7 @@ bool showsFloorAt(const MapObject& object, const LayeredGrid& grid,
       floor += cell.believed() == SemanticClass::kFloor ? 1 : 0;
     }
   }
-  return known >= kLeastKnown && floor >= kFloor * known;
+  return known >= enough && floor >= kFloor * known;
 }
 
 // Of the first `known` of the saved map's objects, paint that the later drive saw to be gone.

@@ -228,9 +228,9 @@ PoseEstimate FusedMapper::addSemantics(const SemanticFrame& frame,
   m.views.pop_front();
   m.rig_turn = frame.rig_turn;
   const SubmapOptions& o = m.options.submaps;
+  const bool gone = m.saved && std::exchange(m.saved->gone, false);
   const bool begins = m.stretches.empty() || view.travelled - m.open().begin_m >= o.length_m ||
-                      view.turned - m.turned_at_stretch >= o.rotation_deg * kDegree ||
-                      (m.saved && std::exchange(m.saved->gone, false));
+                      view.turned - m.turned_at_stretch >= o.rotation_deg * kDegree || gone;
   if (begins) m.beginStretch(view);
   const bool registers = view.travelled - m.last_registered >= o.register_distance_m;
   if (registers) {

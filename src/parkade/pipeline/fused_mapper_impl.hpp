@@ -49,7 +49,8 @@ class FusedMapper::Impl {
     double found_at = 0.0;      // way travelled then
     bool told = false;          // frames have since said the same: poses are given out
     double confirmed_at = 0.0;  // way travelled when a picture last fitted there
-    double lost_at = 0.0;       // and when a place that was told was given up
+    bool lost = false;          // the odometry lost the way there: it is searched anew
+    double lost_at = 0.0;       // way travelled then
     bool gone = false;          // just now: what is seen from here on is looked for by itself
     double last_search = -1e9;
     std::optional<SE2> T_map_world;  // by the last search that told one
@@ -92,7 +93,10 @@ class FusedMapper::Impl {
   void searchSavedMap(const View& view);
   void settleInSavedMap(const Registration& fit, const View& view);
   void confirmPlace(const View& view);
+  void lose(const View& view);
   void givePlaceUp(const std::string& reason);
+  bool comeBack(const Registration& fit, const View& view);
+  [[nodiscard]] bool isMapped(const View& view) const;
   void registerToSavedMap(const SemanticFrame& frame, const View& view);
   [[nodiscard]] Surroundings surroundings(const View& view) const;
   void rebase(const SE2& T_new_world, double dz);

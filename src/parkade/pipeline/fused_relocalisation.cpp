@@ -68,7 +68,7 @@ Surroundings FusedMapper::Impl::surroundings(const View& view) const {
 
 void FusedMapper::Impl::locate(const SemanticFrame& frame, const View& view) {
   const SavedMapOptions& o = options.saved_map;
-  if (located()) {
+  if (located() && !saved->lost) {
     registerToSavedMap(frame, view);
     if (!saved->told) {
       confirmPlace(view);
@@ -77,14 +77,11 @@ void FusedMapper::Impl::locate(const SemanticFrame& frame, const View& view) {
     // No picture is laid on a map from farther off than searches reach, ever again.
     const Eigen::Matrix4d P = filter.relativeCovariance(saved->place, view.anchor);
     if (3.0 * largestSigma(P.topLeftCorner<2, 2>()) > options.loop.max_search_m) {
-      saved->lost_at = view.travelled;
-      saved->gone = true;
-      logInfo("lost in the saved map after {:.0f} m", view.travelled);
-      givePlaceUp("the odometry lost the place");
+      lose(view);
       return;
     }
-    // Beyond the map nothing fits either; but there no search finds another place.
-    if (view.travelled - saved->confirmed_at <= o.give_up_m) return;
+    // Beyond the map nothing fits either, and what looks alike there is another place.
+    if (view.travelled - saved->confirmed_at <= o.give_up_m || !isMapped(view)) return;
   }
   if (view.travelled - saved->lost_at < o.least_m ||
       view.travelled - saved->last_search < o.every_m) {
@@ -110,7 +107,8 @@ void FusedMapper::Impl::searchSavedMap(const View& view) {
   if (!before) return;
   const double agree = o.agree_deg * kDegree;
   if (!samePlace(T_map_vehicle, *before * poseOf(view), o.agree_m, agree)) return;
-  if (located()) {  // by a place told before
+  if (located()) {
+    if (saved->lost && comeBack(found.registration, view)) return;
     if (samePlace(T_map_vehicle, between(saved->place, view), o.agree_m, agree)) return;
     logInfo("another place in the saved map after {:.0f} m", view.travelled);
     givePlaceUp("it was another place");
@@ -118,12 +116,43 @@ void FusedMapper::Impl::searchSavedMap(const View& view) {
   settleInSavedMap(found.registration, view);
 }
 
+// The way until now stays where pictures held it to the map.
+void FusedMapper::Impl::lose(const View& view) {
+  saved->lost = saved->gone = true;
+  saved->told = false;
+  saved->lost_at = view.travelled;
+  saved->T_map_world.reset();
+  saved->reason = "the odometry lost the place";
+  logInfo("lost in the saved map after {:.0f} m", view.travelled);
+}
+
+bool FusedMapper::Impl::comeBack(const Registration& fit, const View& view) {
+  constexpr double kGate = 0.999999;  // two searches say the same
+  const SavedMapOptions& o = options.saved_map;
+  const FilterUpdate update = filter.updateBetween(
+      saved->place, view.anchor, fit.T_map_vehicle,
+      withSharedNoise(fit.information, sharedNoise(o.found_sigma_m, o.found_sigma_deg)), kGate);
+  if (!update.accepted) return false;
+  saved->lost = false;
+  saved->found_at = saved->confirmed_at = view.travelled;
+  corrected = true;
+  return true;
+}
+
 void FusedMapper::Impl::givePlaceUp(const std::string& reason) {
   filter.removeAnchor(saved->place);
   saved->place = -1;
-  saved->told = false;
+  saved->told = saved->lost = false;
   saved->T_map_world.reset();
   saved->reason = reason;
+}
+
+bool FusedMapper::Impl::isMapped(const View& view) const {
+  constexpr double kNear = 10.0;  // m, about as far as a picture shows
+  const Eigen::Vector2d p = between(saved->place, view).translation();
+  if (saved->map.way.empty()) return true;  // who knows
+  return std::any_of(saved->map.way.begin(), saved->map.way.end(),
+                     [&](const Eigen::Vector3d& q) { return (q.head<2>() - p).norm() < kNear; });
 }
 
 void FusedMapper::Impl::rebase(const SE2& T_new_world, double dz) {

@@ -63,7 +63,10 @@ GateResult VioEstimator::Impl::gateNewest(const Eigen::Matrix<double, 6, 6>& spr
   WindowFrame& frame = window_.frames[count - 1];
   WindowFrame& previous = window_.frames[count - 2];
   const int dropped = readings_.dropSpikes(previous.t_ns, frame.t_ns);
-  if (dropped == 0) return gate;
+  // Once more without a reading that explains it: what moves is what most cameras see.
+  if (dropped == 0) {
+    return statistics.contradicted ? features_.gateNewest(window_, spread, true) : gate;
+  }
   logWarning("{} IMU reading(s) before {} ns left out: they jump, and most cameras contradict them",
              dropped, frame.t_ns);
   // A reading just after the frame before had a part in that, too.

@@ -80,8 +80,9 @@ void VioEstimator::Impl::detectStandstill(WindowFrame& frame, const Observations
     const double speed = originVelocity(frame, window_.T_imu_vehicle).norm();
     const bool slow = speed < options.max_speed || was_still;
     if (!slow) known_rest_.reset();
-    still_ = check.quiet && covered && !wheelsTurn(frame) &&
-             (seen ? *seen : slow && readingsAreOfRest(frame, check, was_still));
+    still_ =
+        check.quiet && covered &&
+        (seen ? *seen : slow && !wheelsTurn(frame) && readingsAreOfRest(frame, check, was_still));
     rememberRest(frame, check, seen.has_value());
   }
   if (!still_) {

@@ -186,14 +186,15 @@ void FeatureManager::add(Window& window, const Observations& observations) {
   banned_ = std::move(still_banned);
 }
 
-GateResult FeatureManager::gateNewest(Window& window, const Eigen::Matrix<double, 6, 6>& spread) {
+GateResult FeatureManager::gateNewest(Window& window, const Eigen::Matrix<double, 6, 6>& spread,
+                                      bool is_sure) {
   const std::vector<Innovation> innovations = innovationsOf(window, spread);
   const JudgedCameras judged = judgeCameras(innovations, window.cameras.size());
   GateResult result;
   result.checked = static_cast<int>(innovations.size());
   // The world does not move all around the car at once.
   const std::size_t bad = judged.bad.size();
-  contradicted_ = bad >= kMinContradicting && 2 * bad >= judged.count;
+  contradicted_ = !is_sure && bad >= kMinContradicting && 2 * bad > judged.count;
   result.contradicted = contradicted_;
   if (contradicted_) return result;
   result.cameras = judged.bad;

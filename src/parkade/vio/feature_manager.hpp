@@ -39,7 +39,8 @@ class FeatureManager {
   /// rotation). A camera most of whose features miss loses all of them: a car that fills its view
   /// moves its features alike, so that a robust loss alone would follow it. Where most cameras
   /// would, the frame is left as it is.
-  GateResult gateNewest(Window& window, const Eigen::Matrix<double, 6, 6>& spread);
+  GateResult gateNewest(Window& window, const Eigen::Matrix<double, 6, 6>& spread,
+                        bool is_sure = false);
 
   /// Places features without a point.
   void triangulateNew(Window& window);

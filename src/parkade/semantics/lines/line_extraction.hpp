@@ -20,7 +20,7 @@ struct LineOptions {
   double sight_sigma_deg = 0.05;
   double min_contrast = 8.0;
   int min_confidence = 128;
-  double camera_height_m = 1.0;  ///< for how much a wrong attitude moves a point
+  double camera_height_m = 1.0;
 
   void visit(OptionVisitor& v) {
     v.field("spacing_m", spacing_m, "m", "Distance of points along a line.", 0.01, 1.0);
@@ -40,6 +40,11 @@ struct LineOptions {
             255.0);
     v.field("min_confidence", min_confidence, "of 255",
             "Lines are not measured where the network is less sure.", 0, 255);
+    v.field(
+        "camera_height_m", camera_height_m, "m",
+        "Height of the cameras, for how much a wrong attitude moves a measured line; slots take "
+        "each camera's own.",
+        0.1, 5.0);
   }
 };
 

@@ -93,8 +93,9 @@ void AgentTracker::correct(Track& track, const Measurement& m) const {
   ++track.hits;
 }
 
-void AgentTracker::turnIntoCourse(Track& track) {
+void AgentTracker::turnIntoCourse(Track& track) const {
   if (!track.moving || track.semantic_class == SemanticClass::kPedestrian) return;
+  if (track.state.tail<2>().norm() < options_.moving_speed) return;  // it comes to rest: noise
   const double course = std::atan2(track.state[3], track.state[2]);
   // Cars go along, not across.
   if (std::abs(std::remainder(track.heading - course, M_PI)) > M_PI_4) track.heading = course;

@@ -82,7 +82,7 @@ class AgentTracker {
   void predict(double dt);
   void correct(Track& track, const Measurement& measurement) const;
   void judgeMotion(Track& track) const;
-  static void turnIntoCourse(Track& track);
+  void turnIntoCourse(Track& track) const;
 
   AgentTrackerOptions options_;
   std::vector<Track> tracks_;

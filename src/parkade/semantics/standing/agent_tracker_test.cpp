@@ -121,6 +121,32 @@ TEST(AgentTracker, ACarThatEntersBitByBitHeadsAlongItsWay) {
   }
 }
 
+// As it stops, its velocity becomes noise, which tells no course.
+TEST(AgentTracker, ACarThatStopsKeepsItsHeading) {
+  Random random(3);
+  int turned = 0;
+  int seen_to_stop = 0;
+  for (int drive = 0; drive < 50; ++drive) {
+    AgentTracker tracker({});
+    std::vector<MovingObservation> told;
+    double y = -8.0;
+    double speed = 2.0;
+    for (int k = 0; k < 30; ++k) {
+      if (k > 12) speed = std::max(0.0, speed - 0.3);
+      y += 0.2 * speed;
+      GroundBox seen;
+      seen.center = {6.0 + random.normal(0.0, 0.1), y + random.normal(0.0, 0.1)};
+      seen.size = {1.8, 4.6};
+      told = tracker.update({car(seen)}, {}, k * kStep);
+    }
+    if (told.size() != 1) continue;
+    ++seen_to_stop;
+    turned += std::abs(std::remainder(told[0].heading - M_PI_2, M_PI)) > 0.3 ? 1 : 0;
+  }
+  EXPECT_GT(seen_to_stop, 40);
+  EXPECT_EQ(turned, 0);
+}
+
 TEST(AgentTracker, ComesToRestAndForgets) {
   AgentTracker tracker({});
   std::vector<MovingObservation> told;
