@@ -28,7 +28,7 @@ namespace parkade {
 
 struct SemanticFrontEndOptions {
   std::string network;
-  double distance_m = 0.15;
+  double distance_m = 0.3;
   double interval_s = 0.5;
   BevOptions bev;
   GroundPlaneOptions ground;
