@@ -28,7 +28,7 @@ namespace parkade {
 
 struct SemanticFrontEndOptions {
   std::string network;
-  double distance_m = 0.3;
+  double distance_m = 0.4;
   double interval_s = 0.5;
   BevOptions bev;
   GroundPlaneOptions ground;
