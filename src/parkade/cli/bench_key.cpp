@@ -40,11 +40,6 @@ std::uint64_t programHash() {
   return kHash;
 }
 
-std::string contentOf(const std::string& path) {
-  const Result<std::string> text = readFile(path);
-  return text ? *text : "";
-}
-
 // Adds the files of a folder, but for notes to people; with a stem, those alone that have it.
 void addFiles(const fs::path& folder, const std::string& stem, std::set<fs::path>& files) {
   std::error_code code;
@@ -78,16 +73,21 @@ std::set<fs::path> networkFiles(const BenchVariant& variant) {
 
 }  // namespace
 
+std::string textOrEmpty(const std::string& path) {
+  const Result<std::string> text = readFile(path);
+  return text ? *text : "";
+}
+
 std::string runKey(const BenchVariant& variant, const RunInputs& inputs) {
   std::string text = variant.run_method + "\n" + inputs.cameras + "\n";
   for (const std::string& setting : variant.settings) text += setting + "\n";
   for (const char* file : {"spec.yaml", "rig.yaml", "truth/garage.json", "truth/agents.csv"}) {
-    text += contentOf(joinPath(inputs.sequence, file));
+    text += textOrEmpty(joinPath(inputs.sequence, file));
   }
   const Result<std::string> reference = findReference(inputs.sequence);
-  if (reference) text += contentOf(*reference);
+  if (reference) text += textOrEmpty(*reference);
   if (!variant.import_folder.empty()) {
-    text += contentOf(inputs.trajectory);
+    text += textOrEmpty(inputs.trajectory);
   } else {
     text += fmt::format("{} threads\n", inputs.threads);
     for (const fs::path& file : networkFiles(variant)) {

@@ -8,6 +8,9 @@
 
 namespace parkade::cli {
 
+/// The bytes of a file; none where it cannot be read.
+std::string textOrEmpty(const std::string& path);
+
 /// What a run works with besides its variant.
 struct RunInputs {
   std::string cameras;  ///< of --cameras

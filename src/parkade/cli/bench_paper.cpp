@@ -13,6 +13,7 @@
 #include "parkade/cli/bench_runs.hpp"
 #include "parkade/cli/option_checks.hpp"
 #include "parkade/cli/sim_record.hpp"
+#include "parkade/core/json_text.hpp"
 #include "parkade/io/file.hpp"
 
 namespace parkade::cli {
@@ -157,8 +158,7 @@ Status writeAll(const PaperBenchOptions& options, const BenchPlan& plan,
   Status status = writeBenchReport(options, runs, tables, setting);
   if (status) status = writeFileAtomic(joinPath(options.out, "tables.md"), text);
   if (status) {
-    status = writeFileAtomic(joinPath(options.out, "metrics.json"),
-                             metrics.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    status = writeFileAtomic(joinPath(options.out, "metrics.json"), jsonText(metrics));
   }
   if (status) fmt::print("Report: {}\n", joinPath(options.out, "report.html"));
   return status;

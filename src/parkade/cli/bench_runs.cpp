@@ -12,6 +12,7 @@
 #include "parkade/cli/eval_map.hpp"
 #include "parkade/cli/map_truth_file.hpp"
 #include "parkade/cli/told_covariances.hpp"
+#include "parkade/core/json_text.hpp"
 #include "parkade/eval/map_report.hpp"
 #include "parkade/eval/report.hpp"
 #include "parkade/io/file.hpp"
@@ -22,11 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-std::string textOf(const std::string& path) {
-  const Result<std::string> text = readFile(path);
-  return text ? *text : "";
-}
 
 bool isKept(const Json& mark, const std::string& key) {
   if (!mark.is_object() || !mark.contains("run") || !mark.contains("key")) return false;
@@ -104,7 +100,7 @@ Status judge(JudgedRun& run) {
   const Result<Json> accuracy = judgeTrajectory(run.trajectory, run.sequence);
   if (!accuracy) return accuracy.error();
   for (const auto& [name, value] : accuracy->items()) run.json[name] = value;
-  const std::string timing = textOf(joinPath(run.folder, "timing.json"));
+  const std::string timing = textOrEmpty(joinPath(run.folder, "timing.json"));
   if (!timing.empty()) run.json["timing"] = Json::parse(timing, nullptr, false);
   if (fs::is_regular_file(joinPath(run.folder, "map.db"))) {
     const Result<Json> map = judgeMap(run.folder, run.sequence);
@@ -171,7 +167,7 @@ JudgedRun performRun(const PaperBenchOptions& options, const BenchDrive& drive,
   if (!cameras) return failedRun(drive, variant, cameras.error().message);
   const std::string key = runKey(variant, {*cameras, options.threads, sequence, run.trajectory});
   const std::string mark = joinPath(run.folder, "bench.json");
-  Json before = Json::parse(textOf(mark), nullptr, false);
+  Json before = Json::parse(textOrEmpty(mark), nullptr, false);
   if (!options.again && isKept(before, key)) {
     run.json = std::move(before["run"]);
     run.kept = true;
@@ -189,7 +185,7 @@ JudgedRun performRun(const PaperBenchOptions& options, const BenchDrive& drive,
   // A failure is not kept: the next bench tries again.
   if (status) {
     const Json kept{{"key", key}, {"run", run.json}};
-    status = writeFileAtomic(mark, kept.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    status = writeFileAtomic(mark, jsonText(kept));
     if (!status) return failedRun(drive, variant, status.error().message);
   }
   return run;

@@ -16,6 +16,7 @@
 #include "parkade/cli/map_command.hpp"
 #include "parkade/cli/map_path.hpp"
 #endif
+#include "parkade/core/json_text.hpp"
 #include "parkade/core/progress.hpp"
 #include "parkade/io/file.hpp"
 #include "parkade/io/rig_report.hpp"
@@ -59,8 +60,7 @@ Result<int> describeMapFile(const InfoArguments& arguments) {
 
 Status writeJson(const std::string& path, const nlohmann::json& json) {
   if (path.empty()) return {};
-  return writeFileAtomic(path,
-                         json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  return writeFileAtomic(path, jsonText(json));
 }
 
 Result<int> describeRig(const InfoArguments& arguments) {

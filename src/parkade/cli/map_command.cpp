@@ -15,6 +15,7 @@
 
 #include "parkade/cli/command.hpp"
 #include "parkade/cli/map_path.hpp"
+#include "parkade/core/json_text.hpp"
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
 #include "parkade/mapping/map_check.hpp"
@@ -150,8 +151,7 @@ Status checkMap(const MapArguments& arguments) {
   const std::vector<std::string> faults = findFaults(*map);
   if (!arguments.json.empty()) {
     const nlohmann::json result = {{"faults", faults}};
-    const std::string text =
-        result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    const std::string text = jsonText(result);
     if (Status status = writeFileAtomic(arguments.json, text); !status) return status;
   }
   if (faults.empty()) {
@@ -267,8 +267,7 @@ Status describeMap(const std::string& path, const std::string& json) {
   const nlohmann::json description = describe(path, *map);
   fmt::print("{}", textOf(path, description));
   if (json.empty()) return {};
-  return writeFileAtomic(
-      json, description.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  return writeFileAtomic(json, jsonText(description));
 }
 
 void addMapCommand(CLI::App& app, int& exit_code) {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "parkade/cli/output_folder.hpp"
+#include "parkade/core/json_text.hpp"
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
 #include "parkade/io/pose_covariance_io.hpp"
@@ -22,11 +23,6 @@
 
 namespace parkade::cli {
 namespace {
-
-// Paths and names of the user's need not be UTF-8.
-std::string jsonText(const nlohmann::json& json) {
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-}
 
 nlohmann::json timingJson(const RunSummary& summary) {
   nlohmann::json json;

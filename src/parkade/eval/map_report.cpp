@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Parkade authors
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/eval/map_report.hpp"
+#include "parkade/core/json_text.hpp"
 
 #include <fmt/core.h>
 
@@ -115,7 +116,7 @@ std::string mapEvaluationJson(const MapEvaluation& e) {
   const Eigen::Vector2d& t = e.T_truth_map.translation();
   json["T_truth_map"] = {{"x", t.x()}, {"y", t.y()}, {"angle", e.T_truth_map.angle()}};
   json["passed_within_m"] = e.options.passed_within_m;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return jsonText(json);
 }
 
 std::string mapEvaluationTable(const MapEvaluation& e) {

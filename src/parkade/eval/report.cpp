@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Parkade authors
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/eval/report.hpp"
+#include "parkade/core/json_text.hpp"
 
 #include <fmt/core.h>
 
@@ -92,7 +93,7 @@ std::string evaluationJson(const Evaluation& e, const EvaluationLabels& labels) 
                     {"yaw", e.consistency->yaw},
                     {"poses", e.consistency->poses}};
   }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return jsonText(json);
 }
 
 std::string evaluationTable(const Evaluation& e, const EvaluationLabels& labels) {

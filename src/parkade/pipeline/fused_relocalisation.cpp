@@ -32,6 +32,12 @@ void gather(const Submap& submap, const SE2& T_all_submap, Submap& all) {
   }
 }
 
+// A search tells the place no better than this.
+Eigen::Matrix3d foundInformation(const Registration& fit, const SavedMapOptions& options) {
+  return withSharedNoise(fit.information,
+                         sharedNoise(options.found_sigma_m, options.found_sigma_deg));
+}
+
 }  // namespace
 
 Surroundings FusedMapper::Impl::surroundings(const View& view) const {
@@ -129,9 +135,8 @@ void FusedMapper::Impl::lose(const View& view) {
 bool FusedMapper::Impl::comeBack(const Registration& fit, const View& view) {
   constexpr double kGate = 0.999999;  // two searches say the same
   const SavedMapOptions& o = options.saved_map;
-  const FilterUpdate update = filter.updateBetween(
-      saved->place, view.anchor, fit.T_map_vehicle,
-      withSharedNoise(fit.information, sharedNoise(o.found_sigma_m, o.found_sigma_deg)), kGate);
+  const FilterUpdate update = filter.updateBetween(saved->place, view.anchor, fit.T_map_vehicle,
+                                                   foundInformation(fit, o), kGate);
   if (!update.accepted) return false;
   saved->lost = false;
   saved->found_at = saved->confirmed_at = view.travelled;
@@ -172,10 +177,8 @@ void FusedMapper::Impl::settleInSavedMap(const Registration& fit, const View& vi
   constexpr double kAnywhere = 100.0;  // m, and rad
   saved->place = filter.addPlace({}, kAnywhere * Eigen::Matrix4d::Identity());
   const SavedMapOptions& o = options.saved_map;
-  filter.updateBetween(
-      saved->place, view.anchor, fit.T_map_vehicle,
-      withSharedNoise(fit.information, sharedNoise(o.found_sigma_m, o.found_sigma_deg)),
-      options.submaps.gate_probability);
+  filter.updateBetween(saved->place, view.anchor, fit.T_map_vehicle, foundInformation(fit, o),
+                       options.submaps.gate_probability);
   // The map's car stood that high, at the nearest place of its way.
   constexpr double kNearestPlace = 0.1;  // m
   filter.updateHeight(saved->place, z, kNearestPlace, options.submaps.gate_probability,

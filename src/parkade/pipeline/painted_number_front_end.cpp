@@ -224,10 +224,7 @@ Result<std::vector<TextReading>> PaintedNumberFrontEnd::Impl::readTurned(
     if (seen.empty()) break;
     auto readings = reader.read(straighten(seen.front(), frames), options.letters);
     if (!readings) return readings;
-    std::erase_if(*readings, [&](const TextReading& reading) {
-      return std::find(limit_values.begin(), limit_values.end(), reading.text) ==
-             limit_values.end();
-    });
+    keepTexts(limit_values, *readings);
     if (certaintyOf(*readings) > certaintyOf(surest)) surest = std::move(readings).value();
   }
   return surest;

@@ -11,6 +11,7 @@
 #include "parkade/core/result.hpp"
 #include "parkade/semantics/bev_views.hpp"
 #include "parkade/semantics/markings/painted_numbers.hpp"
+#include "parkade/semantics/texts/speed_limits.hpp"
 #include "parkade/types/pose_estimate.hpp"
 #include "parkade/types/samples.hpp"
 #include "parkade/types/semantic_features.hpp"
@@ -21,7 +22,7 @@ struct PaintedNumberFrontEndOptions {
   bool enabled = true;
   std::string reader;
   std::string letters = "0123456789";
-  std::string limits = "5 8 10 15 20 25 30 40 50";
+  std::string limits = kUsualLimits;
   double distance_m = 0.3;
   int max_reads = 3;
   PaintedNumberOptions numbers;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/pipeline/sign_follower.hpp"
 
-#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -11,24 +10,13 @@
 #include "parkade/semantics/texts/zone_marker_views.hpp"
 
 namespace parkade {
-namespace {
-
-void keepLimits(const std::string& limits, std::vector<ZoneMarkerView>& views) {
-  const std::vector<std::string> known = split(limits, ' ');
-  for (ZoneMarkerView& view : views) {
-    for (std::vector<TextReading>& face : view.readings) {
-      std::erase_if(face, [&](const TextReading& reading) {
-        return !reading.text.empty() &&
-               std::find(known.begin(), known.end(), reading.text) == known.end();
-      });
-    }
-  }
-}
-
-}  // namespace
-
 SignFollower::SignFollower(const SignFollowerOptions& options)
-    : options_(options), guides_(options.guide), limits_(options.limit) {}
+    : options_(options),
+      guides_(options.guide),
+      limits_(options.limit),
+      limit_texts_(split(options.limits, ' ')) {
+  limit_texts_.emplace_back();
+}
 
 Status SignFollower::add(const cv::Mat& labels, const cv::Mat& image, const cv::Mat& mask,
                          const Camera& camera, const SE3& T_up_cam, TimeNs t_ns,
@@ -43,7 +31,11 @@ Status SignFollower::add(const cv::Mat& labels, const cv::Mat& image, const cv::
                 T_up_cam.translation(), limit || knows_arrows ? &reader : nullptr,
                 limit ? "0123456789" : kGuideLetters);
     if (!views) return views.error();
-    if (limit) keepLimits(options_.limits, *views);
+    for (ZoneMarkerView& view : *views) {
+      for (auto& face : view.readings) {
+        if (limit) keepTexts(limit_texts_, face);
+      }
+    }
     (limit ? limits_ : guides_).add(*views, t_ns);
   }
   return {};

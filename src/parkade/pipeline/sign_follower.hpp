@@ -9,6 +9,7 @@
 #include "parkade/camera/camera.hpp"
 #include "parkade/core/options.hpp"
 #include "parkade/core/result.hpp"
+#include "parkade/semantics/texts/speed_limits.hpp"
 #include "parkade/semantics/texts/zone_marker_faces.hpp"
 #include "parkade/semantics/texts/zone_marker_tracker.hpp"
 #include "parkade/semantics/texts/zone_text_reader.hpp"
@@ -19,7 +20,7 @@ namespace parkade {
 struct SignFollowerOptions {
   bool enabled = true;
   double text_confidence = 0.9;
-  std::string limits = "5 8 10 15 20 25 30 40 50";
+  std::string limits = kUsualLimits;
   ZoneMarkerFaceOptions faces;
   ZoneMarkerTrackerOptions guide = hanging();
   ZoneMarkerTrackerOptions limit = plate();
@@ -74,6 +75,7 @@ class SignFollower {
   SignFollowerOptions options_;
   ZoneMarkerTracker guides_;
   ZoneMarkerTracker limits_;
+  std::vector<std::string> limit_texts_;  ///< and that of a plain face
 };
 
 }  // namespace parkade

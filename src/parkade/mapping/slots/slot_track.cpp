@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <utility>
 
+#include "parkade/core/nearest_first.hpp"
 #include "parkade/mapping/map_check.hpp"
 #include "parkade/mapping/objects/label_sight.hpp"
 
@@ -41,12 +42,7 @@ Seen toWorld(const SlotObservation& o, const SE2& T, double floor) {
 std::vector<std::optional<std::size_t>> matchTracks(const std::vector<Track>& tracks,
                                                     const std::vector<Seen>& all, double sigma,
                                                     double gate) {
-  struct Pair {
-    double distance;
-    std::size_t track;
-    std::size_t seen;
-  };
-  std::vector<Pair> pairs;
+  std::vector<TrackPair> pairs;
   for (std::size_t j = 0; j < all.size(); ++j) {
     for (std::size_t i = 0; i < tracks.size(); ++i) {
       if (!mayBeSame(tracks[i], all[j])) continue;
@@ -57,16 +53,7 @@ std::vector<std::optional<std::size_t>> matchTracks(const std::vector<Track>& tr
       if (distance < gate) pairs.push_back({distance, i, j});
     }
   }
-  std::stable_sort(pairs.begin(), pairs.end(),
-                   [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
-  std::vector<bool> is_used(tracks.size(), false);
-  std::vector<std::optional<std::size_t>> matches(all.size());
-  for (const Pair& pair : pairs) {
-    if (is_used[pair.track] || matches[pair.seen]) continue;
-    is_used[pair.track] = true;
-    matches[pair.seen] = pair.track;
-  }
-  return matches;
+  return matchNearestFirst(std::move(pairs), tracks.size(), all.size());
 }
 
 bool showsEntrance(const BevLabels& labels, const SE2& T_vehicle_world, const Track& track) {

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "parkade/core/json_text.hpp"
 #include "parkade/core/markup.hpp"
 #include "parkade/mapping/storage/map_drawing.hpp"
 
@@ -211,7 +212,7 @@ Status exportGeoJson(const ParkingMap& map, const std::string& path) {
                            {"axes", "x, y in the ground plane, right-handed, z up"}}},
                          {"features", features}};
   // Text of a damaged file need not be UTF-8.
-  return writeFile(path, document.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+  return writeFile(path, jsonText(document, 1));
 }
 
 Status exportLanelet2(const ParkingMap& map, const std::string& path) {

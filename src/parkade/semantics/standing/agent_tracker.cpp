@@ -5,9 +5,10 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <utility>
 
 #include "parkade/core/check.hpp"
+#include "parkade/core/nearest_first.hpp"
 
 namespace parkade {
 namespace {
@@ -128,8 +129,7 @@ std::vector<MovingObservation> AgentTracker::update(const std::vector<AgentDetec
   for (const AgentDetection& detection : detections) {
     measurements.push_back(measure(detection, T_odom_vehicle));
   }
-  // Nearest pairs first.
-  std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
+  std::vector<TrackPair> pairs;
   for (std::size_t d = 0; d < detections.size(); ++d) {
     for (std::size_t k = 0; k < tracks_.size(); ++k) {
       if (tracks_[k].semantic_class != detections[d].semantic_class) continue;
@@ -137,23 +137,20 @@ std::vector<MovingObservation> AgentTracker::update(const std::vector<AgentDetec
           tracks_[k].covariance.topLeftCorner<2, 2>() + measurements[d].covariance;
       const Eigen::Vector2d off = measurements[d].p_odom - tracks_[k].state.head<2>();
       const double distance = off.dot(S.llt().solve(off));
-      if (distance < kAgentGate) pairs.emplace_back(distance, d, k);
+      if (distance < kAgentGate) pairs.push_back({distance, k, d});
     }
   }
-  std::sort(pairs.begin(), pairs.end());
-  std::vector<int> track_of(detections.size(), -1);
-  std::vector<bool> taken(tracks_.size(), false);
-  for (const auto& [distance, d, k] : pairs) {
-    if (track_of[d] >= 0 || taken[k]) continue;
-    track_of[d] = static_cast<int>(k);
-    taken[k] = true;
-    correct(tracks_[k], measurements[d]);
-    tracks_[k].seen_ns = t_ns;
-    judgeMotion(tracks_[k]);
-    turnIntoCourse(tracks_[k]);
+  auto track_of = matchNearestFirst(std::move(pairs), tracks_.size(), detections.size());
+  for (std::size_t d = 0; d < detections.size(); ++d) {
+    if (!track_of[d]) continue;
+    Track& track = tracks_[*track_of[d]];
+    correct(track, measurements[d]);
+    track.seen_ns = t_ns;
+    judgeMotion(track);
+    turnIntoCourse(track);
   }
   for (std::size_t d = 0; d < detections.size(); ++d) {
-    if (track_of[d] >= 0) continue;
+    if (track_of[d]) continue;
     Track track;
     track.id = next_id_++;
     track.semantic_class = detections[d].semantic_class;
@@ -167,13 +164,13 @@ std::vector<MovingObservation> AgentTracker::update(const std::vector<AgentDetec
     track.rest = measurements[d].p_odom;
     track.hits = 1;
     track.seen_ns = t_ns;
-    track_of[d] = static_cast<int>(tracks_.size());
+    track_of[d] = tracks_.size();
     tracks_.push_back(track);
   }
   std::vector<MovingObservation> out;
   const SE2 T_vehicle_odom = T_odom_vehicle.inverse();
   for (std::size_t d = 0; d < detections.size(); ++d) {
-    const Track& track = tracks_[static_cast<std::size_t>(track_of[d])];
+    const Track& track = tracks_[*track_of[d]];
     if (track.hits < options_.confirm_hits) continue;
     MovingObservation o;
     o.id = track.id;

@@ -7,8 +7,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "parkade/core/check.hpp"
+#include "parkade/core/nearest_first.hpp"
 
 namespace parkade {
 namespace {
@@ -156,12 +158,7 @@ void ZoneMarkerTracker::start(const ZoneMarkerView& view, TimeNs t_ns) {
 void ZoneMarkerTracker::add(const std::vector<ZoneMarkerView>& views, TimeNs t_ns) {
   PARKADE_CHECK(t_ns >= last_ns_, "a view of {} ns after one of {} ns", t_ns, last_ns_);
   last_ns_ = t_ns;
-  struct Pair {
-    double misfit;
-    std::size_t track;
-    std::size_t view;
-  };
-  std::vector<Pair> pairs;
+  std::vector<TrackPair> pairs;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     for (std::size_t j = 0; j < views.size(); ++j) {
       const double value = misfit(tracks_[i], views[j]);
@@ -169,17 +166,12 @@ void ZoneMarkerTracker::add(const std::vector<ZoneMarkerView>& views, TimeNs t_n
       pairs.push_back({value, i, j});
     }
   }
-  std::stable_sort(pairs.begin(), pairs.end(),
-                   [](const Pair& a, const Pair& b) { return a.misfit < b.misfit; });
-  std::vector<bool> track_used(tracks_.size(), false);
-  std::vector<bool> view_used(views.size(), false);
-  for (const Pair& pair : pairs) {
-    if (track_used[pair.track] || view_used[pair.view]) continue;
-    track_used[pair.track] = view_used[pair.view] = true;
-    extend(tracks_[pair.track], views[pair.view], t_ns);
+  const auto matches = matchNearestFirst(std::move(pairs), tracks_.size(), views.size());
+  for (std::size_t j = 0; j < views.size(); ++j) {
+    if (matches[j]) extend(tracks_[*matches[j]], views[j], t_ns);
   }
   for (std::size_t j = 0; j < views.size(); ++j) {
-    if (!view_used[j] && views[j].whole && views[j].height_ratio > 0.0) start(views[j], t_ns);
+    if (!matches[j] && views[j].whole && views[j].height_ratio > 0.0) start(views[j], t_ns);
   }
   std::erase_if(tracks_, [&](const Track& track) {
     if (toSeconds(t_ns - track.seen_ns) <= options_.forget_s) return false;
