@@ -107,6 +107,19 @@ class BenchErrorTest(unittest.TestCase):
             kinds |= {line.split(",")[4] for line in lines[1:]}
         self.assertLessEqual({"true", "shaken", "network"}, kinds)
 
+    def test_all_samples_of_one_drive(self):
+        for more in ([], ["--texts", "--samples", self.out], ["--set", "stitched=false", "--samples", self.out]):
+            result = bench("semantics", "--everything", *(more or ["--out", self.out]))
+            self.assertEqual(result.returncode, 2)
+            self.assertIn("--everything goes with --samples", result.stderr)
+        result = bench("semantics", "--garages", "random:2140-2140", "--samples", self.out, "--everything",
+                       "--fast", "--set", "frames=1", "--set", "coarse_light=true")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        names = {path.name for path in (self.out / "g2140").iterdir()}
+        views = {f"000_raw{k}{end}" for k in range(4) for end in (".jpg", "_labels.png")}
+        self.assertLessEqual({"000_bev.png", "000_bev_labels.png", "done"} | views, names)
+        self.assertTrue(any(name.endswith("_texts.csv") for name in names), names)
+
     def test_slot_trials(self):
         result = bench("semantics", "--samples", self.out, "--slot-trials")
         self.assertEqual(result.returncode, 2)

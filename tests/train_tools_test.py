@@ -241,6 +241,71 @@ class LossTest(unittest.TestCase):
             self.assertEqual(result.returncode, 2)
             self.assertIn("--out", result.stderr)
 
+    def test_loss_on_a_device_is_the_processors(self):
+        from train import SegmentationLoss
+        from train_device import segmentation_loss
+
+        torch.manual_seed(3)
+        rows = torch.randn(2, 5, 1, 2, 16, 16)
+        logits = rows.expand(2, 5, 2, 2, 16, 16).reshape(2, 20, 16, 16).contiguous()
+        labels = torch.randint(0, 5, (2, 16, 32)).repeat_interleave(2, 1)
+        labels[0, :8] = 255
+        weight = torch.rand(5) + 0.5
+        expected = SegmentationLoss.apply(logits, labels.byte(), weight, 0)
+        self.assertAlmostEqual(float(segmentation_loss(logits, labels, weight)), float(expected), places=2)
+
+    def test_labels_move_with_the_picture(self):
+        from batch_augment import augment, transform
+        from classes import IGNORE
+
+        torch.manual_seed(4)
+        labels = torch.zeros(16, 64, 64).byte()
+        labels[:, 10:30, 5:25], labels[:, 35:60, 40:56] = 1, 2
+        images = 100.0 * labels[:, None].float().expand(-1, 3, -1, -1)
+        for views in (False, True):
+            moved, told = transform(images, labels, IGNORE, 0.5, views)
+            self.assertGreater(int((told == 1).sum()), 1000)
+            self.assertGreater(int((told == IGNORE).sum()), 100)
+            inner = (F.max_pool2d(told[:, None].float(), 9, 1, 4)
+                     == -F.max_pool2d(-told[:, None].float(), 9, 1, 4))[:, 0] & (told != IGNORE)
+            middle = (slice(None), slice(5, -5), slice(5, -5))  # what is next to its edge is not known
+            apart = (moved[:, 0] - 100.0 * told).abs()[middle][inner[middle]]
+            self.assertGreater(len(apart), 10000)
+            self.assertLess(float(apart.max()), 1e-2)
+        same = augment(moved, told, 0, 1, plain=1.0)
+        self.assertTrue(bool((same[moved.sum(1, keepdim=True).expand(-1, 3, -1, -1) < 1] == 0).all()))
+        changed = augment(moved, told, 0, 1, plain=0.0)
+        self.assertEqual(changed.shape, moved.shape)
+        self.assertTrue(bool(((changed >= 0) & (changed <= 255)).all()))
+
+    def test_training_on_a_device_takes_in_what_is_drawn(self):
+        from PIL import Image
+
+        rng = np.random.default_rng(5)
+        with tempfile.TemporaryDirectory() as folder:
+            for seed in (1, 3):
+                garage = pathlib.Path(folder) / f"g{seed:04d}"
+                garage.mkdir()
+                for view in range(4):
+                    Image.fromarray(rng.integers(0, 255, (192, 320, 3)).astype(np.uint8)).save(
+                        garage / f"000_raw{view}.jpg")
+                    Image.fromarray(rng.integers(14, 16, (192, 320)).astype(np.uint8)).save(
+                        garage / f"000_raw{view}_labels.png")
+                (garage / "done").touch()
+            out = pathlib.Path(folder) / "out"
+            result = train_tool("train_device.py", "--data", folder, "--network", "raw", "--out", out,
+                                "--minutes", "0.01", "--device", "cpu", "--batch", "2", "--begin-with", "4",
+                                "--readers", "1")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn("4 pictures  mean IoU", result.stdout)
+            state = torch.load(out / "raw.pt")
+            self.assertEqual(state["name"], "raw")
+            self.assertGreater(state["step"], 0)
+            result = train_tool("train_device.py", "--data", f"{folder}/none", "--network", "raw", "--out", out,
+                                "--device", "cpu")
+            self.assertEqual(result.returncode, 2)
+            self.assertIn("no such folder", result.stderr)
+
     def test_training_ends_with_the_process_that_makes_batches(self):
         from train import next_batch
 

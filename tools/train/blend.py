@@ -17,18 +17,18 @@ import torch
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from export_text import fold  # noqa: E402
-from text_network import TextNetwork  # noqa: E402
-from warm_start import load, with_idle_norms  # noqa: E402
+from text_network import TextNetwork, name_of  # noqa: E402
+from warm_start import load, stored_weights, with_idle_norms  # noqa: E402
 
 
-def folded(path):
+def folded(path, name):
     """The weights as exported: batch norms lie in the convolutions, and do nothing by themselves."""
-    network = TextNetwork()
+    network = TextNetwork(name)
     state = load(path, network)
     if path.endswith(".onnx"):
         return state
     network.load_state_dict(state)
-    return with_idle_norms(path, fold(network.eval()).state_dict(), TextNetwork())
+    return with_idle_norms(path, fold(network.eval()).state_dict(), TextNetwork(name))
 
 
 def main():
@@ -41,7 +41,8 @@ def main():
     a = parser.parse_args()
     if not 0.0 <= a.share <= 1.0:
         parser.error(f"--share {a.share} is not between 0 and 1")
-    before, after = folded(a.before), folded(a.after)
+    name = name_of(stored_weights(a.after))
+    before, after = folded(a.before, name), folded(a.after, name)
     blend = {key: value if not value.dtype.is_floating_point else
              torch.lerp(value, after[key], a.share) for key, value in before.items()}
     os.makedirs(os.path.dirname(a.out) or ".", exist_ok=True)

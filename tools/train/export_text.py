@@ -17,7 +17,7 @@ from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from export import compare, inline_constants, parse_arguments, replacing  # noqa: E402
-from text_network import ALPHABET, HEIGHT, MEAN, SCALE, WIDTH, TextNetwork  # noqa: E402
+from text_network import ALPHABET, HEIGHT, MEAN, SCALE, WIDTH, TextNetwork, name_of  # noqa: E402
 
 
 def fold(network):
@@ -54,8 +54,9 @@ def write_description(model, path):
 
 def main():
     a = parse_arguments(__doc__, "text.pt of a training")
-    network = TextNetwork()
-    network.load_state_dict(torch.load(a.state, map_location="cpu")["average"])
+    weights = torch.load(a.state, map_location="cpu")["average"]
+    network = TextNetwork(name_of(weights))
+    network.load_state_dict(weights)
     network = fold(network.eval())
     model = a.out + ".onnx"
     with replacing(model, a.out + ".yaml") as (new_model, new_description):

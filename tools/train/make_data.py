@@ -6,6 +6,7 @@
     tools/train/make_data.py --program build/release/parkade --out DATA --garages 0-99
     tools/train/make_data.py --out VIEWS --garages 3000-3249 --frames 5 --views
     tools/train/make_data.py --out TEXTS --garages 2000-2131 --frames 8 --texts --any-letter
+    tools/train/make_data.py --out ALL --garages 1600-1899 --frames 10 --everything --any-letter
 
 Every garage has its own layout, style, light, occupancy, people, rig and attitude errors, drawn from
 its seed. Goes on where an earlier call ended. Seeds from 5000 on are kept for tests.
@@ -45,8 +46,10 @@ def main():
                         help="all cameras' views and no stitched pictures")
     parser.add_argument("--texts", action="store_true",
                         help="straightened texts to learn reading from instead of pictures")
+    parser.add_argument("--everything", action="store_true",
+                        help="stitched pictures, all cameras' views and texts")
     parser.add_argument("--any-letter", action="store_true",
-                        help="with --texts: zones begin at a letter drawn for each garage, not at A")
+                        help="with texts: zones begin at a letter drawn for each garage, not at A")
     arguments = parser.parse_args()
     seeds = re.fullmatch(r"([0-9]+)-([0-9]+)", arguments.garages)
     first, last = (int(text) for text in seeds.groups()) if seeds else (1, 0)
@@ -68,6 +71,8 @@ def main():
             command += ["--set", "stitched=false"]
         if arguments.texts:
             command += ["--texts"]
+        if arguments.everything:
+            command += ["--everything"]
         if arguments.any_letter:
             # Most garages have few rows of zones, which would leave the later letters unlearnt.
             letter = random.Random(seed + 777).choice("ABCDEFGHJKLMNPQRSTUVWXYZ")

@@ -12,14 +12,15 @@ from torch import nn
 from torch.nn import functional as F
 
 # What each network labels (NETWORKS in classes.py).
-PICTURES = {"bev": "bev", "bev-deep": "bev", "raw": "raw"}
+PICTURES = {"bev": "bev", "bev-deep": "bev", "raw": "raw", "raw-deep": "raw"}
 WIDTHS = {"bev": [16, 32, 64, 96, 128], "raw": [16, 24, 48, 64, 96]}
 # Channels, kernel and stride of the first convolution. One of 6 and 4 sees twice the pixels that are labelled
 # (PX_PER_LABEL and size in classes.py), and begins as one of 3 and 2 for their means.
 STEMS = {"bev": (16, 3, 2), "raw": (16, 3, 2)}
 # Residual blocks behind each level. Where pictures are small they cost little and see far: what is worn or
 # in glare is told by what stands around.
-DEPTHS = {"bev": [0, 0, 0, 0, 0], "bev-deep": [0, 0, 0, 2, 1], "raw": [0, 0, 0, 0, 0]}
+DEPTHS = {"bev": [0, 0, 0, 0, 0], "bev-deep": [0, 0, 0, 2, 1], "raw": [0, 0, 0, 0, 0],
+          "raw-deep": [0, 0, 1, 2, 2]}
 
 
 class ConvBlock(nn.Sequential):
@@ -85,7 +86,7 @@ def name_of(state):
     """Of the network that a state file of train.py holds. Before there were two for stitched pictures,
     the one with residual blocks was called bev as well."""
     deep = any(key.startswith("deep.") for key in state["average"])
-    return "bev-deep" if state["name"] == "bev" and deep else state["name"]
+    return state["name"] + "-deep" if deep and not state["name"].endswith("-deep") else state["name"]
 
 
 def grown(before, now):

@@ -24,22 +24,33 @@ def block(channels_in, channels_out, kernel=3, dilation=1, padding=None):
         nn.BatchNorm2d(channels_out), nn.ReLU(inplace=True))
 
 
+# Channels of the convolutions, in their order.
+WIDTHS = {"text": (16, 32, 48, 48, 64, 80), "text-wide": (24, 48, 80, 80, 112, 128)}
+
+
 class TextNetwork(nn.Module):
-    def __init__(self):
+    def __init__(self, name="text"):
         super().__init__()
+        a, b, c, d, e, f = WIDTHS[name]
         self.layers = nn.Sequential(
-            block(3, 16), nn.MaxPool2d(2),                         # 20 x 48
-            block(16, 32), nn.MaxPool2d((2, 1)),                   # 10 x 48
-            block(32, 48), block(48, 48), nn.MaxPool2d((2, 1)),    # 5 x 48
-            block(48, 64),
-            block(64, 80, (5, 3), padding=(0, 1)),                 # 1 x 48
-            block(80, 80, (1, 5), dilation=2),                     # a second copy beside the first
-            block(80, 80, (1, 5), dilation=4),
-            nn.Conv2d(80, len(ALPHABET) + 1, 1))
+            block(3, a), nn.MaxPool2d(2),                          # 20 x 48
+            block(a, b), nn.MaxPool2d((2, 1)),                     # 10 x 48
+            block(b, c), block(c, d), nn.MaxPool2d((2, 1)),        # 5 x 48
+            block(d, e),
+            block(e, f, (5, 3), padding=(0, 1)),                   # 1 x 48
+            block(f, f, (1, 5), dilation=2),                       # a second copy beside the first
+            block(f, f, (1, 5), dilation=4),
+            nn.Conv2d(f, len(ALPHABET) + 1, 1))
 
     def forward(self, x):
         """N x 3 x 40 x 96 (RGB, normalised) -> logits N x channels x 1 x 48."""
         return self.layers(x)
+
+
+def name_of(state):
+    """Of the network whose weights a state of train_text.py or an exported file holds."""
+    first = state["layers.0.0.weight"].shape[0]
+    return next(name for name, widths in WIDTHS.items() if widths[0] == first)
 
 
 def to_input(patches):

@@ -20,8 +20,8 @@ import torch  # noqa: E402
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from text_data import NUMBERS, SIGNS, Crops, augmented, fonts, rendered, text_files  # noqa: E402
-from text_network import TextNetwork, column_loss, read, sequence_loss, to_input  # noqa: E402
-from warm_start import load, settle  # noqa: E402
+from text_network import WIDTHS, TextNetwork, column_loss, name_of, read, sequence_loss, to_input  # noqa: E402
+from warm_start import load, settle, stored_weights  # noqa: E402
 
 
 def is_validation(garage):
@@ -89,6 +89,7 @@ def main():
     parser.add_argument("--data", nargs="*", default=[], help="folders of make_data.py --texts")
     parser.add_argument("--out", help="folder for text.pt")
     parser.add_argument("--check", help="only score this text.pt or exported .onnx")
+    parser.add_argument("--network", choices=list(WIDTHS), default="text-wide")
     parser.add_argument("--steps", type=int, default=3000)
     parser.add_argument("--batch", type=int, default=48)
     parser.add_argument("--rate", type=float, default=3e-3)
@@ -108,7 +109,7 @@ def main():
     torch.set_num_threads(a.threads)
     torch.manual_seed(a.seed)
     rng = np.random.default_rng(a.seed)
-    network = TextNetwork()
+    network = TextNetwork(name_of(stored_weights(a.check)) if a.check else a.network)
     if a.warm_start:
         network.load_state_dict(load(a.warm_start, network))
         if a.warm_start.endswith(".onnx"):
@@ -127,7 +128,7 @@ def main():
           f"{sum(p.numel() for p in network.parameters())} parameters", flush=True)
     optimiser = torch.optim.AdamW(network.parameters(), lr=a.rate, weight_decay=1e-2)
     schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, a.rate, a.steps, pct_start=0.1)
-    average = TextNetwork()
+    average = TextNetwork(a.network)
     average.load_state_dict(network.state_dict())
     start, losses = time.time(), []
     for step in range(1, a.steps + 1):

@@ -15,20 +15,27 @@ def blocks_of(network):
             yield name, parts[0], parts[1]
 
 
+def stored_weights(path):
+    """By name, of a state file or of an ONNX file."""
+    if not path.endswith(".onnx"):
+        return torch.load(path, map_location="cpu")["average"]
+    import onnx
+    from onnx import numpy_helper
+
+    return {value.name: torch.from_numpy(numpy_helper.to_array(value).copy())
+            for value in onnx.load(path).graph.initializer}
+
+
 def load(path, network):
     """The state dict of path, a state file or an ONNX file that export.py or export_text.py wrote.
     Of the latter `settle` must find the batch norms' means and spreads before training. Where the
     network is larger (letters or blocks were added), what is new begins anew."""
-    if not path.endswith(".onnx"):
-        stored, fresh = torch.load(path)["average"], network.state_dict()
-        refuse_larger(path, stored, fresh)
-        return grown(stored, fresh)
-    import onnx
-    from onnx import numpy_helper
-
-    stored = {value.name: torch.from_numpy(numpy_helper.to_array(value).copy())
-              for value in onnx.load(path).graph.initializer}
-    return with_idle_norms(path, stored, network)
+    stored = stored_weights(path)
+    if path.endswith(".onnx"):
+        return with_idle_norms(path, stored, network)
+    fresh = network.state_dict()
+    refuse_larger(path, stored, fresh)
+    return grown(stored, fresh)
 
 
 def refuse_larger(path, stored, fresh):

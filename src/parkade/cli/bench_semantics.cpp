@@ -37,7 +37,8 @@ constexpr const char* kSemanticsFooter =
     "  parkade bench semantics --garages random:3 --out DIR --pictures --network mine.yaml\n"
     "  parkade bench semantics --marking-points PS2.0 --out DIR --pictures\n"
     "  parkade bench semantics --garages random:0-99 --samples DATA   (training data)\n"
-    "  parkade bench semantics --garages random:0-99 --samples TEXTS --texts";
+    "  parkade bench semantics --garages random:0-99 --samples TEXTS --texts\n"
+    "  parkade bench semantics --garages random:0-99 --samples ALL --everything";
 
 struct BenchArguments {
   std::string garages = "random:20";
@@ -48,6 +49,7 @@ struct BenchArguments {
   bool slot_trials = false;
   bool fast = false;
   bool texts = false;
+  bool everything = false;
   int threads = defaultThreads();
   SegmentationScoreOptions segmentation;
   std::string labels = "network";
@@ -85,8 +87,8 @@ Status drawAll(const BenchArguments& arguments, const std::vector<int>& seeds,
 }
 
 // A training sample as files: the stitched picture and its labels, and two cameras' pictures with
-// theirs; where it was not stitched, all cameras'.
-Status writeSample(const SemanticSampler& sampler, const SemanticSample& sample,
+// theirs, or all cameras'.
+Status writeSample(const SemanticSampler& sampler, const SemanticSample& sample, bool all_views,
                    const std::string& stem) {
   const ImageEncoding png{.png = true, .png_level = 1};
   const ImageEncoding jpeg{.png = false, .jpeg_quality = 95};
@@ -100,10 +102,10 @@ Status writeSample(const SemanticSampler& sampler, const SemanticSample& sample,
     if (status) status = writeImage(stem + "_bev_labels.png", labels, png);
   }
   const std::size_t cameras = sample.frames.images.size();
-  for (std::size_t k = 0; status && k < (stitched ? 2 : cameras); ++k) {
+  for (std::size_t k = 0; status && k < (all_views ? cameras : 2); ++k) {
     const std::size_t i =
         (static_cast<std::size_t>(sample.frames.index) + k * (cameras / 2)) % cameras;
-    const std::size_t view = stitched ? i : k;
+    const std::size_t view = all_views ? k : i;
     const int camera = static_cast<int>(view);
     status = writeImage(fmt::format("{}_raw{}.jpg", stem, k), sample.frames.images[view], jpeg);
     cv::Mat labels = sampler.cameraLabels(sample, camera);
@@ -141,8 +143,13 @@ Status writeSamples(const BenchArguments& arguments, const std::vector<int>& see
       },
       [&](const SemanticSampler& sampler, const SemanticSample& sample) {
         const std::string stem = joinPath(folder, fmt::format("{:03d}", sample.frames.index));
-        return arguments.texts ? writeTexts(*texts, sampler, sample, stem)
-                               : writeSample(sampler, sample, stem);
+        const bool pictures = arguments.everything || !arguments.texts;
+        const bool all_views = arguments.everything || !arguments.options.stitched;
+        Status each = pictures ? writeSample(sampler, sample, all_views, stem) : Status();
+        if (each && (arguments.everything || arguments.texts)) {
+          each = writeTexts(*texts, sampler, sample, stem);
+        }
+        return each;
       });
   return status ? done() : status;
 }
@@ -242,6 +249,12 @@ int run(BenchArguments& arguments) {
   if (arguments.texts && arguments.samples.empty()) {
     return failUsage({"bench semantics: --texts needs --samples DIR"});
   }
+  if (arguments.everything &&
+      (arguments.samples.empty() || arguments.texts || !arguments.options.stitched)) {
+    return failUsage(
+        {"bench semantics: --everything goes with --samples DIR, without --texts and "
+         "stitched=false"});
+  }
   if (!arguments.options.stitched && arguments.samples.empty()) {
     return failUsage({"bench semantics: stitched=false serves --samples alone"});
   }
@@ -286,6 +299,9 @@ void addBenchSemantics(CLI::App& bench, int& exit_code) {
   command->add_flag("--texts", arguments->texts,
                     "With --samples: straightened zone markers and slots' numbers with their texts "
                     "instead of pictures with labels");
+  command->add_flag("--everything", arguments->everything,
+                    "With --samples: stitched pictures, all cameras' views and texts of one drive "
+                    "through each garage");
   command
       ->add_option("--marking-points", arguments->marking_points,
                    "Score slots' corners on marked real pictures instead: 10 m wide, with "

@@ -1,0 +1,210 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Parkade authors
+# SPDX-License-Identifier: Apache-2.0
+"""Trains a segmentation network on a graphics processor, for a given time.
+
+    tools/train/train_device.py --data DATA --network bev-deep --out RUN --minutes 25
+
+Pictures stay on the device and are changed there; garages that make_data.py finishes meanwhile are
+taken in. Writes RUN/NETWORK.pt, which export.py reads. Garages whose seed ends in 3 are kept for
+validation. Changing RUN/minutes, where that file is, changes how long it goes on.
+"""
+import argparse
+import os
+import sys
+import time
+
+import numpy as np
+import torch
+from torch.nn import functional as F
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from batch_augment import augment, transform  # noqa: E402
+from classes import IGNORE, NETWORKS  # noqa: E402
+from device_data import Pictures, Reader, read_pictures  # noqa: E402
+from network import MEAN, PICTURES, SCALE, full_size, make_network  # noqa: E402
+from scores import Confusion, table  # noqa: E402
+from train import class_weights, save  # noqa: E402
+from warm_start import load, settle  # noqa: E402
+
+DICE = 0.7
+
+
+class Clock:
+    """How much of the time is spent, which a file beside the results may change."""
+
+    def __init__(self, minutes, folder):
+        self.start, self.minutes, self.path = time.time(), minutes, os.path.join(folder, "minutes")
+
+    def elapsed(self):
+        return time.time() - self.start
+
+    def done(self):
+        try:
+            with open(self.path) as file:
+                self.minutes = float(file.read())
+        except (OSError, ValueError):
+            pass
+        return self.elapsed() / (60.0 * self.minutes)
+
+
+def rate_at(done, step, highest):
+    return highest * min(1.0, (step + 1) / 300) * (0.5 * (1 + np.cos(np.pi * min(done, 1.0))) + 0.003)
+
+
+class Mean:
+    """Exponential mean of the weights, which is what gets exported."""
+
+    def __init__(self, network, decay=0.9985):
+        self.decay, self.network = decay, network
+        self.state = {k: v.detach().clone() for k, v in network.state_dict().items()}
+
+    @torch.no_grad()
+    def update(self, step):
+        decay = min(self.decay, (1 + step) / (10 + step))
+        now = self.network.state_dict()
+        floats = [k for k, v in now.items() if v.dtype.is_floating_point]
+        averages = [self.state[k] for k in floats]
+        torch._foreach_mul_(averages, decay)
+        torch._foreach_add_(averages, [now[k] for k in floats], alpha=1.0 - decay)
+
+
+def segmentation_loss(logits, labels, weight):
+    """Weighted cross entropy plus DICE times one minus the Dice of each class in the batch (SegmentationLoss
+    of train.py)."""
+    logits = full_size(logits.float())
+    known = labels != IGNORE
+    entropy = F.cross_entropy(logits, torch.where(known, labels, -100), weight=weight, ignore_index=-100)
+    p = logits.softmax(1) * known[:, None]
+    y = torch.where(known, labels, 0)
+    classes = logits.shape[1]
+    of_truth = p.gather(1, y[:, None])[:, 0]
+    flat = y.flatten()
+    overlap = torch.zeros(classes, device=p.device).scatter_add(0, flat, of_truth.flatten())
+    truth = torch.zeros(classes, device=p.device).scatter_add(0, flat, known.float().flatten())
+    mass = p.sum((0, 2, 3))
+    present = (truth > 20).float()
+    dice = 1.0 - (2.0 * overlap + 1.0) / (truth + mass + 1.0)
+    return entropy + DICE * (present * dice).sum() / present.sum().clamp(min=1.0)
+
+
+@torch.no_grad()
+def validate(network, data, device, limit):
+    network.eval()
+    images = np.concatenate(data.test_images)
+    labels = np.concatenate(data.test_labels)
+    step = max(1, len(images) // limit)
+    confusion = Confusion(data.num_classes)
+    for first in range(0, len(images), 16 * step):
+        part = slice(first, first + 16 * step, step)
+        x = torch.from_numpy(images[part]).to(device).permute(0, 3, 1, 2).float()
+        x = ((x - MEAN) * SCALE).contiguous(memory_format=torch.channels_last)
+        confusion.add(labels[part], full_size(network(x)).argmax(1).cpu().numpy())
+    return confusion.iou(), len(images[::step])
+
+
+def check(parser, arguments):
+    """Ends the program where it has no device, or no folder to read."""
+    if torch.device(arguments.device).type == "cuda" and not torch.cuda.is_available():
+        parser.error(f"--device {arguments.device}: torch finds none here (train.py and train_text.py "
+                     "learn on the processor; --device cpu tries this program there)")
+    for folder in arguments.data:
+        if not os.path.isdir(folder):
+            parser.error(f"--data {folder}: no such folder")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--data", nargs="+", required=True, help="folders of make_data.py")
+    parser.add_argument("--network", choices=list(PICTURES), required=True)
+    parser.add_argument("--out", required=True)
+    parser.add_argument("--minutes", type=float, default=25.0)
+    parser.add_argument("--batch", type=int, default=32)
+    parser.add_argument("--rate", type=float, default=2e-3)
+    parser.add_argument("--plain", type=float, default=0.4,
+                        help="share of pictures that stay nearly as they were drawn [0.4]")
+    parser.add_argument("--begin-with", type=int, default=200, help="pictures to wait for at first [200]")
+    parser.add_argument("--readers", type=int, default=2, help="processes that read pictures [2]")
+    parser.add_argument("--device", default="cuda")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--warm-start", help="a state file or an exported .onnx to begin with")
+    a = parser.parse_args()
+    check(parser, a)
+    os.makedirs(a.out, exist_ok=True)
+    torch.manual_seed(a.seed)
+    torch.backends.cudnn.benchmark = True
+    pictures = PICTURES[a.network]
+    classes = NETWORKS[pictures]["classes"]
+    reader = Reader(a.data, read_pictures, (pictures,), a.readers)
+    reader.poll()  # its processes begin before the device is in use
+    clock = Clock(a.minutes, a.out)
+    log = open(os.path.join(a.out, a.network + ".txt"), "a", buffering=1)
+
+    def say(text):
+        log.write(text + "\n")
+        print(text, flush=True)
+
+    data = Pictures(a.device, len(classes))
+    while data.images.count < a.begin_with or not data.test_images:
+        data.take(reader.poll())
+        time.sleep(0.5)
+    network = make_network(a.network, len(classes))
+    if a.warm_start:
+        network.load_state_dict(load(a.warm_start, network))
+    network = network.to(a.device, memory_format=torch.channels_last)
+    if a.warm_start and a.warm_start.endswith(".onnx"):
+        settle(network, [((data.batch(a.batch)[0] - MEAN) * SCALE) for _ in range(8)])
+    floor, lines = ((classes.index("floor"), classes.index("slot_line")) if pictures == "bev"
+                    else (None, None))
+    optimiser = torch.optim.AdamW(network.parameters(), lr=a.rate, weight_decay=1e-2)
+    mean = Mean(network)
+    say(f"{a.network}: {sum(p.numel() for p in network.parameters())} parameters, "
+        f"{data.images.count} pictures after {clock.elapsed():.0f} s")
+    step, losses, polled, said = 0, [], time.time(), time.time()
+    weight = class_weights(data.pixels).to(a.device)
+    half = torch.bfloat16
+    while True:
+        done = clock.done() if step % 20 == 0 else done
+        for group in optimiser.param_groups:
+            group["lr"] = rate_at(done, step, a.rate)
+        with torch.no_grad():
+            images, labels = data.batch(a.batch)
+            images, labels = transform(images, labels, IGNORE, 0.6, pictures == "raw")
+            images = (augment(images, labels, floor, lines, a.plain) - MEAN) * SCALE
+            images = images.contiguous(memory_format=torch.channels_last)
+        with torch.autocast(torch.device(a.device).type, dtype=half):
+            logits = network(images)
+        loss = segmentation_loss(logits, labels, weight)
+        optimiser.zero_grad(set_to_none=True)
+        loss.backward()
+        torch.nn.utils.clip_grad_norm_(network.parameters(), 5.0)
+        optimiser.step()
+        step += 1
+        mean.update(step)
+        losses.append(loss.detach())
+        if time.time() - polled > 10:
+            polled = time.time()
+            if done < 0.9:
+                data.take(reader.poll())
+                weight = class_weights(data.pixels).to(a.device)
+        if time.time() - said > 60 or done >= 1.0:
+            said = time.time()
+            best = make_network(a.network, len(classes)).to(a.device, memory_format=torch.channels_last)
+            best.load_state_dict(mean.state)
+            iou, count = validate(best, data, a.device, 200 if done < 1.0 else 1000)
+            save(os.path.join(a.out, a.network + ".pt"),
+                 {"average": {k: v.cpu() for k, v in mean.state.items()}, "step": step,
+                  "name": a.network, "classes": classes})
+            say(f"step {step}  {clock.elapsed():.0f} s  done {done:.2f}  "
+                f"loss {torch.stack(losses).mean():.3f}  {data.images.count} pictures  mean IoU "
+                f"{np.nanmean(iou):.3f} of {count}  {table(classes, iou)}")
+            losses = []
+        if done >= 1.0:
+            break
+    reader.pool.shutdown(wait=False, cancel_futures=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
