@@ -37,6 +37,18 @@ TEST(MakeScene, ACutDriveMeetsWhomTheWholeOneMeets) {
   }
 }
 
+// Embree ended the program while it built the tree of this one's triangles.
+TEST(MakeScene, AGarageThatSplitTrianglesBadlyIsDrawn) {
+  const auto scene = sceneOf("sim:random?garage_seed=4823&seed=4824&occupancy=0.85&duration=1");
+  RenderOptions options;
+  options.bake.floor_cell = 1.0;
+  options.bake.indirect_cell = 2.0;
+  options.bake.gather_rays = 16;
+  options.bake.bounces = 1;
+  const Renderer renderer(scene, options);
+  EXPECT_GT(scene->objects.size(), 20U);
+}
+
 /// The parked cars: their places, by slot.
 std::vector<std::pair<std::uint32_t, Eigen::Vector3d>> parkedIn(const Scene& scene) {
   std::vector<std::pair<std::uint32_t, Eigen::Vector3d>> parked;
