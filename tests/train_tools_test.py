@@ -193,27 +193,37 @@ class LossTest(unittest.TestCase):
         self.assertEqual(list(before.shape), [2, 28, 32, 48])
         self.assertLess(float((before - after).abs().max()), 1e-4)
 
-    def test_each_bev_network_is_its_own(self):
-        """Those that come with Parkade fit each into its own; so do states of when both had one name."""
+    def test_each_network_is_its_own(self):
+        """Those that come with Parkade fit into theirs, smaller ones into larger ones only; so do states of when
+        two had one name."""
         from network import make_network, name_of
-        from warm_start import load
+        from text_network import TextNetwork
+        from warm_start import load, stored_weights
 
-        models = {"bev": "bev_segmentation.onnx", "bev-deep": "bev_segmentation_deep.onnx"}
+        models = {"bev-deep": ("bev_segmentation.onnx", 15), "raw-deep": ("view_segmentation.onnx", 7)}
+        for name, (model, classes) in models.items():
+            network = make_network(name, classes)
+            network.load_state_dict(load(str(SOURCE / "models" / model), network))
+        reader = str(SOURCE / "models/zone_text.onnx")
+        from text_network import name_of as text_name_of
+        self.assertEqual(text_name_of(stored_weights(reader)), "text-wide")
+        network = TextNetwork("text-wide")
+        network.load_state_dict(load(reader, network))
+        with self.assertRaisesRegex(SystemExit, "another network"):
+            load(reader, TextNetwork("text"))
         sizes = {}
         with tempfile.TemporaryDirectory() as folder:
-            for name, model in models.items():
+            for name in ("bev", "bev-deep"):
                 network = make_network(name, 15)
                 sizes[name] = sum(p.numel() for p in network.parameters())
-                network.load_state_dict(load(str(SOURCE / "models" / model), network))
                 for said in {name, "bev"}:
                     self.assertEqual(name_of({"name": said, "average": network.state_dict()}), name)
                 torch.save({"average": network.state_dict()}, f"{folder}/{name}.pt")
             self.assertAlmostEqual(sizes["bev"] / 1e6, 0.63, delta=0.01)
             self.assertAlmostEqual(sizes["bev-deep"] / 1e6, 1.25, delta=0.01)
             deep, plain = make_network("bev-deep", 15), make_network("bev", 15)
-            for path in (f"{folder}/bev.pt", str(SOURCE / "models" / models["bev"])):
-                deep.load_state_dict(load(path, deep))
-            for path in (f"{folder}/bev-deep.pt", str(SOURCE / "models" / models["bev-deep"])):
+            deep.load_state_dict(load(f"{folder}/bev.pt", deep))
+            for path in (f"{folder}/bev-deep.pt", str(SOURCE / "models/bev_segmentation.onnx")):
                 with self.assertRaisesRegex(SystemExit, "another network"):
                     load(path, plain)
             deep_run = pathlib.Path(folder) / "run"
@@ -225,6 +235,29 @@ class LossTest(unittest.TestCase):
             result = train_tool("train.py", "--data", folder, "--network", "bev", "--out", deep_run)
             self.assertEqual(result.returncode, 2)
             self.assertIn("is of bev-deep", result.stderr)
+
+    def test_blends_lie_between(self):
+        from network import make_network
+        from text_network import TextNetwork
+        from warm_start import stored_weights
+
+        torch.manual_seed(6)
+        with tempfile.TemporaryDirectory() as folder:
+            for make, said in ((lambda: make_network("raw-deep", 7), {"name": "raw-deep"}),
+                               (lambda: TextNetwork("text"), {})):
+                paths = [f"{folder}/{k}.pt" for k in range(3)]
+                for path in paths[:2]:
+                    torch.save({"average": make().state_dict(), "step": 1}, path)
+                for share in ("0", "1", "0.25"):
+                    result = train_tool("blend.py", *paths[:2], "--share", share, "--out", paths[2])
+                    self.assertEqual(result.returncode, 0, result.stderr)
+                    key = next(key for key, value in make().state_dict().items() if value.dim() == 4)
+                    a, b, blend = (stored_weights(path)[key] for path in paths)
+                    wanted = a + float(share) * (b - a)
+                    # Batch norms that did nothing yet are folded into it, but for their epsilon.
+                    self.assertLess(float((blend - wanted).abs().max()), 1e-4)
+                state = torch.load(paths[2])
+                self.assertEqual({key: state.get(key) for key in said}, said)
 
     def test_training_tells_missing_samples(self):
         with tempfile.TemporaryDirectory() as folder:

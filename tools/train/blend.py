@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The Parkade authors
 # SPDX-License-Identifier: Apache-2.0
-"""Blends the weights of a text reader and of one that was trained on from it.
+"""Moves a network that was trained on from another one back towards it.
 
     tools/train/blend.py models/zone_text.onnx RUN/text.pt --share 0.7 --out BLEND/text.pt
 
-What a network learnt on new data keeps more of what it knew before where its weights are moved back
-a part of the way (M. Wortsman et al., "Robust fine-tuning of zero-shot models", CVPR 2022). Takes
-states and exported files; export_text.py writes the result as ONNX.
+What it learnt stays for the most part, and what it knew before comes back: on pictures unlike those that it
+learnt from last, the blend is often better than both (Wortsman et al., Robust fine-tuning of zero-shot models,
+2022). export.py and export_text.py read what it writes.
 """
 import argparse
 import os
@@ -16,19 +16,32 @@ import sys
 import torch
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from classes import NETWORKS  # noqa: E402
 from export_text import fold  # noqa: E402
+from network import PICTURES, fold_batch_norm, make_network, network_of  # noqa: E402
 from text_network import TextNetwork, name_of  # noqa: E402
 from warm_start import load, stored_weights, with_idle_norms  # noqa: E402
 
 
-def folded(path, name):
+def maker_of(path):
+    """What makes a network such as that of path, what folds its batch norms, and what else its state says."""
+    weights = stored_weights(path)
+    if "layers.0.0.weight" in weights:
+        name = name_of(weights)
+        return lambda: TextNetwork(name), fold, {}
+    name, count = network_of(weights)
+    said = {"name": name, "classes": NETWORKS[PICTURES[name]]["classes"]}
+    return lambda: make_network(name, count), fold_batch_norm, said
+
+
+def folded(path, make, fold_norms):
     """The weights as exported: batch norms lie in the convolutions, and do nothing by themselves."""
-    network = TextNetwork(name)
+    network = make()
     state = load(path, network)
     if path.endswith(".onnx"):
         return state
     network.load_state_dict(state)
-    return with_idle_norms(path, fold(network.eval()).state_dict(), TextNetwork(name))
+    return with_idle_norms(path, fold_norms(network.eval()).state_dict(), make())
 
 
 def main():
@@ -41,12 +54,12 @@ def main():
     a = parser.parse_args()
     if not 0.0 <= a.share <= 1.0:
         parser.error(f"--share {a.share} is not between 0 and 1")
-    name = name_of(stored_weights(a.after))
-    before, after = folded(a.before, name), folded(a.after, name)
+    make, fold_norms, said = maker_of(a.after)
+    before, after = folded(a.before, make, fold_norms), folded(a.after, make, fold_norms)
     blend = {key: value if not value.dtype.is_floating_point else
              torch.lerp(value, after[key], a.share) for key, value in before.items()}
     os.makedirs(os.path.dirname(a.out) or ".", exist_ok=True)
-    torch.save({"average": blend, "step": 0}, a.out)
+    torch.save({"average": blend, "step": 0, **said}, a.out)
 
 
 if __name__ == "__main__":

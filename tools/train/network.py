@@ -89,6 +89,16 @@ def name_of(state):
     return state["name"] + "-deep" if deep and not state["name"].endswith("-deep") else state["name"]
 
 
+def network_of(weights):
+    """(name, number of classes) of the network whose weights by name these are, batch norms folded or not."""
+    kernels = lambda state: {k: v.shape for k, v in state.items() if v.dim() == 4}  # noqa: E731
+    classes = weights["head.weight"].shape[0] // 4
+    for name in PICTURES:
+        if kernels(make_network(name, classes).state_dict()) == kernels(weights):
+            return name, classes
+    raise SystemExit(f"weights of none of {', '.join(PICTURES)}")
+
+
 def grown(before, now):
     """The state dict `now` of a fresh network with the weights of a narrower, shallower or equal one in it.
     What the old channels compute stays as it was: new ones feed nothing into them until training says so.

@@ -41,7 +41,8 @@ struct ZoneMarkerFrontEnd::Impl {
     if (!signs_seen) return signs_seen.error();
     return viewsOf(findZoneMarkers(labels->labels, image, masks[camera], eye.camera,
                                    T_up_cam.rotation(), options.faces),
-                   T_up_cam.translation(), &reader, options.letters);
+                   T_up_cam.translation(), &reader, options.letters,
+                   [&](const ZoneMarkerView& view) { return tracker.needsNoReading(view); });
   }
 };
 

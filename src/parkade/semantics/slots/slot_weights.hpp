@@ -7,31 +7,31 @@
 // Written by tools/train/slot_weights.py: do not edit.
 namespace parkade {
 
-inline constexpr double kSlotIntercept = 0.115;
-inline constexpr double kSlotDoubtWeight = 0.591;
+inline constexpr double kSlotIntercept = 0.658;
+inline constexpr double kSlotDoubtWeight = 0.707;
 inline constexpr SlotClues kSlotWeights = {
-    1.019,   // seen
-    0.696,   // way_floor
-    -6.944,  // way_paint
-    -3.580,  // paint_across
-    2.135,   // towards_car
-    -3.776,  // away
-    -4.119,  // lane_beyond
-    1.598,   // closed
-    1.167,   // t
-    1.112,   // l
-    -6.198,  // stop_in_front
-    -2.115,  // slanted
-    -2.555,  // parallel
-    0.778,   // neighbours
-    -5.876,  // pillar
-    -2.908,  // unusual_width
-    -1.372,  // skew
-    -0.579,  // faint
-    -3.295,  // turned_out
-    -1.394,  // mark_between
-    -1.841,  // bars
-    -0.819,  // angle
+    1.042,   // seen
+    0.820,   // way_floor
+    -7.803,  // way_paint
+    -3.507,  // paint_across
+    1.445,   // towards_car
+    -4.066,  // away
+    -4.101,  // lane_beyond
+    1.504,   // closed
+    1.242,   // t
+    1.249,   // l
+    -6.415,  // stop_in_front
+    -2.055,  // slanted
+    -2.524,  // parallel
+    0.587,   // neighbours
+    -6.247,  // pillar
+    -2.099,  // unusual_width
+    -1.826,  // skew
+    -0.888,  // faint
+    -2.871,  // turned_out
+    -1.718,  // mark_between
+    -1.168,  // bars
+    -0.451,  // angle
 };
 
 }  // namespace parkade

@@ -182,6 +182,21 @@ void ZoneMarkerTracker::add(const std::vector<ZoneMarkerView>& views, TimeNs t_n
   });
 }
 
+bool ZoneMarkerTracker::needsNoReading(const ZoneMarkerView& view) const {
+  constexpr double kSure = 0.99;
+  constexpr double kSupport = 12.0;  // about three sure readings
+  constexpr std::size_t kEach = 3;
+  const Track* only = nullptr;
+  for (const Track& track : tracks_) {
+    if (misfit(track, view) >= kMarkerGate) continue;
+    if (only != nullptr) return false;
+    only = &track;
+  }
+  if (only == nullptr || only->views.size() % kEach == 0) return false;
+  const TextReading text = only->text.best();
+  return text.probability > kSure && only->text.support(text.text) > kSupport;
+}
+
 std::vector<ZoneMarker> ZoneMarkerTracker::takeTold() {
   std::vector<ZoneMarker> told;
   for (Track& track : tracks_) {

@@ -76,6 +76,10 @@ class ZoneMarkerTracker {
   /// Takes what one camera saw at an instant; in order of time (checked).
   void add(const std::vector<ZoneMarkerView>& views, TimeNs t_ns);
 
+  /// Whether what a view shows need not be read: it is of one marker, and of no other, whose text
+  /// several views surely agree on. Every third view of such a one is to be read all the same.
+  [[nodiscard]] bool needsNoReading(const ZoneMarkerView& view) const;
+
   /// The markers that have become well enough known since.
   std::vector<ZoneMarker> takeTold();
 

@@ -108,6 +108,35 @@ TEST(ZoneMarkerTracker, AViewThatSurelyReadsAnotherTextIsOfAnotherMarker) {
   EXPECT_EQ(followedWith(says("C12", 0.95)), 2U);
 }
 
+TEST(ZoneMarkerTracker, WhatIsKnownNeedsReadingNowAndThen) {
+  const Eigen::Vector3d marker(6.0, 3.0, 1.7);
+  const auto view = [&](int k) { return viewOf(marker, 0.6, {0.3 * k, 0.0, 0.9}, nullptr); };
+  for (const double sure : {0.95, 0.5}) {
+    SCOPED_TRACE(sure);
+    ZoneMarkerTracker tracker({});
+    EXPECT_FALSE(tracker.needsNoReading(view(0)));
+    int skipped = 0;
+    for (int k = 0; k < 20; ++k) {
+      ZoneMarkerView seen = view(k);
+      if (k > 1) {
+        skipped += tracker.needsNoReading(seen) ? 1 : 0;
+      }
+      if (k == 2) {
+        EXPECT_EQ(skipped, 0);  // two readings are not enough
+      }
+      seen.readings = says(k % 2 == 0 || sure > 0.9 ? "B12" : "B13", sure);
+      tracker.add({seen}, k * TimeNs{100000000});
+    }
+    EXPECT_EQ(skipped, sure > 0.9 ? 10 : 0);
+    // Another direction, and a place where two may stand.
+    EXPECT_FALSE(tracker.needsNoReading(viewOf({6.0, -3.0, 1.7}, 0.6, {6.0, 0.0, 0.9}, nullptr)));
+    tracker.add({viewOf({6.1, 3.1, 1.7}, 0.6, {5.7, 0.0, 0.9}, nullptr),
+                 viewOf({6.0, 3.0, 1.7}, 0.6, {5.7, 0.0, 0.9}, nullptr)},
+                TimeNs{2100000000});
+    EXPECT_FALSE(tracker.needsNoReading(view(20)));
+  }
+}
+
 TEST(ZoneMarkerTracker, NeighboursStayApart) {
   Random random(4);
   ZoneMarkerTracker tracker({});

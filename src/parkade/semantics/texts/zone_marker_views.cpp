@@ -114,16 +114,18 @@ Result<ReadMarker> readMarker(const ZoneMarkerSight& sight, ZoneTextReader& read
   return read;
 }
 
-Result<std::vector<ZoneMarkerView>> viewsOf(const std::vector<ZoneMarkerSight>& sights,
-                                            const Eigen::Vector3d& eye, ZoneTextReader* reader,
-                                            const std::string& only) {
+Result<std::vector<ZoneMarkerView>> viewsOf(
+    const std::vector<ZoneMarkerSight>& sights, const Eigen::Vector3d& eye, ZoneTextReader* reader,
+    const std::string& only, const std::function<bool(const ZoneMarkerView&)>& known) {
   std::vector<ZoneMarkerView> views;
   for (const ZoneMarkerSight& sight : sights) {
-    // Where the middle is not seen a view places nothing, but may be read.
-    if (sight.cut && (reader == nullptr || sight.faces.empty())) continue;
     ZoneMarkerView view{eye, sight.ray_level, sight.sigma, sight.height_ratio, sight.height_sigma,
                         {},  !sight.cut};
-    if (reader != nullptr) {
+    const bool read_it =
+        reader != nullptr && !sight.faces.empty() && (known == nullptr || !known(view));
+    // Where the middle is not seen a view places nothing, but may be read.
+    if (sight.cut && !read_it) continue;
+    if (read_it) {
       Result<ReadMarker> read = readMarker(sight, *reader, only);
       if (!read) return read.error();
       if (!read->faces.empty()) view.readings.push_back(std::move(read->readings));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -28,9 +29,11 @@ Result<ReadMarker> readMarker(const ZoneMarkerSight& sight, ZoneTextReader& read
 
 /// What one camera's sights say to the tracker: those seen whole, from the camera's place `eye` in
 /// the axes of their rays. `reader` reads their faces, from the characters `only` (empty: all);
-/// without a reader nothing is read. Fails as the reader does.
-Result<std::vector<ZoneMarkerView>> viewsOf(const std::vector<ZoneMarkerSight>& sights,
-                                            const Eigen::Vector3d& eye, ZoneTextReader* reader,
-                                            const std::string& only = {});
+/// without a reader nothing is read, nor what `known` (empty: nothing) says need not be. Fails as
+/// the reader does.
+Result<std::vector<ZoneMarkerView>> viewsOf(
+    const std::vector<ZoneMarkerSight>& sights, const Eigen::Vector3d& eye, ZoneTextReader* reader,
+    const std::string& only = {},
+    const std::function<bool(const ZoneMarkerView&)>& known = nullptr);
 
 }  // namespace parkade
