@@ -55,7 +55,7 @@ void addFiles(const fs::path& folder, const std::string& stem, std::set<fs::path
 std::set<fs::path> networkFiles(const BenchVariant& variant) {
   std::set<fs::path> files;
   if (variant.run_method == "vis") return files;
-  for (const char* name : {kBevNetwork, kViewNetwork, "zone_text"}) {
+  for (const char* name : {kBevNetwork, kViewNetwork, "zone_text", "slot_number"}) {
     const Result<std::string> own = findModel(name);
     if (own) addFiles(fs::path(*own).parent_path(), "", files);
   }

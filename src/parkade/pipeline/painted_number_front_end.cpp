@@ -157,9 +157,9 @@ Result<std::unique_ptr<PaintedNumberFrontEnd>> PaintedNumberFrontEnd::create(
     const Rig& rig, std::vector<cv::Mat> masks, const PaintedNumberFrontEndOptions& options) {
   std::unique_ptr<PaintedNumberFrontEnd> none;
   if (!options.enabled) return none;
-  const Result<std::string> path = namedOrOwnModel(options.reader, "zone_text");
+  const Result<std::string> path = namedOrOwnModel(options.reader, "slot_number");
   if (!path) {
-    logInfo("no painted numbers: the network zone_text is not installed");
+    logInfo("no painted numbers: the network slot_number is not installed");
     return none;
   }
   Result<ZoneTextReader> reader = ZoneTextReader::load(*path);
