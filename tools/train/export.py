@@ -73,7 +73,7 @@ def write_class_map(pictures, model, path):
         "input:",
         f"  width: {width}",
         f"  height: {height}",
-        f"  any_size: {'true' if pictures in METRES_PER_PX else 'false'}",
+        "  any_size: true",
         "  channels: rgb",
         f"  mean: {MEAN:g}",
         f"  scale: {SCALE:.9g}",
