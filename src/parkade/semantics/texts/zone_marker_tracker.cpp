@@ -132,6 +132,7 @@ double ZoneMarkerTracker::misfit(const Track& track, const ZoneMarkerView& view)
 
 void ZoneMarkerTracker::extend(Track& track, const ZoneMarkerView& view, TimeNs t_ns) const {
   track.views.push_back(view);
+  ++track.seen;
   // As many as it takes to be told, however few are to be kept.
   if (track.views.size() >
       static_cast<std::size_t>(std::max(options_.max_views, options_.told_views))) {
@@ -192,7 +193,7 @@ bool ZoneMarkerTracker::needsNoReading(const ZoneMarkerView& view) const {
     if (only != nullptr) return false;
     only = &track;
   }
-  if (only == nullptr || only->views.size() % kEach == 0) return false;
+  if (only == nullptr || only->seen % kEach == 0) return false;
   const TextReading text = only->text.best();
   return text.probability > kSure && only->text.support(text.text) > kSupport;
 }

@@ -93,6 +93,7 @@ class ZoneMarkerTracker {
     std::uint64_t id = 0;
     std::deque<ZoneMarkerView> views;
     std::size_t told = 0;                             ///< of the views, those that were told
+    std::size_t seen = 0;                             ///< views so far, also those that went
     Eigen::Vector4d state = Eigen::Vector4d::Zero();  ///< position, height
     Eigen::Matrix4d covariance = Eigen::Matrix4d::Identity();
     TextEvidence text;

@@ -128,11 +128,22 @@ TEST(ZoneMarkerTracker, WhatIsKnownNeedsReadingNowAndThen) {
       tracker.add({seen}, k * TimeNs{100000000});
     }
     EXPECT_EQ(skipped, sure > 0.9 ? 10 : 0);
+    for (int k = 20; k < 80; ++k) {  // more than are kept
+      ZoneMarkerView seen = view(20);
+      skipped += tracker.needsNoReading(seen) ? 1 : 0;
+      seen.readings = says("B12", sure);
+      tracker.add({seen}, k * TimeNs{100000000});
+    }
+    if (sure > 0.9) {
+      EXPECT_EQ(skipped, 50);
+    } else {
+      EXPECT_LT(skipped, 40);
+    }
     // Another direction, and a place where two may stand.
     EXPECT_FALSE(tracker.needsNoReading(viewOf({6.0, -3.0, 1.7}, 0.6, {6.0, 0.0, 0.9}, nullptr)));
     tracker.add({viewOf({6.1, 3.1, 1.7}, 0.6, {5.7, 0.0, 0.9}, nullptr),
                  viewOf({6.0, 3.0, 1.7}, 0.6, {5.7, 0.0, 0.9}, nullptr)},
-                TimeNs{2100000000});
+                TimeNs{8100000000});
     EXPECT_FALSE(tracker.needsNoReading(view(20)));
   }
 }
