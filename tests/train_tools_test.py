@@ -385,8 +385,8 @@ class LossTest(unittest.TestCase):
 
         model = str(SOURCE / "models" / "view_segmentation.onnx")
         rng = np.random.default_rng(3)
-        pictures = to_input(rng.integers(0, 255, (4, 96, 160, 3)).astype(np.uint8))
-        network = make_network("raw", 7)
+        pictures = to_input(rng.integers(0, 255, (4, 192, 320, 3)).astype(np.uint8))
+        network = make_network("raw-deep", 7)
         network.load_state_dict(load(model, network))
         with torch.no_grad():
             before = network.eval()(pictures)
