@@ -35,6 +35,11 @@ NETWORKS = {
 PX_PER_LABEL = {"bev": 1, "raw": 1}
 
 
+def is_validation(garage):
+    """Whether a garage seed is kept for validation."""
+    return garage % 10 == 3
+
+
 def label_table(network):
     """Label image value -> output channel of the network, 256 entries; IGNORE stays."""
     spec = NETWORKS[network]

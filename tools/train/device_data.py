@@ -11,8 +11,8 @@ import numpy as np
 import torch
 from PIL import Image
 
-from classes import NETWORKS, label_table
-from text_data import HEIGHT, NUMBERS, NUMBERS_WEIGHT, SIGNS, SIGNS_WEIGHT
+from classes import NETWORKS, is_validation, label_table
+from text_network import HEIGHT
 
 
 def read_pictures(folder, pictures):
@@ -44,17 +44,6 @@ def read_texts(folder):
         patches.append(strip[: HEIGHT * len(table)].reshape(len(table), HEIGHT, -1, 3))
         rows += table
     return (np.concatenate(patches), rows) if rows else None
-
-
-def text_weight(row):
-    """How often a patch is learnt from: far ones cannot be read; plain ones are many."""
-    if row["kind"] in NUMBERS:
-        return NUMBERS_WEIGHT
-    if row["kind"] in SIGNS:
-        return SIGNS_WEIGHT
-    if float(row["height_px"]) <= 9.0 or (row["text"] and float(row["distance_m"]) >= 16.0):
-        return 0.0
-    return 1.0 if row["text"] else 0.35
 
 
 class Growing:
@@ -110,7 +99,7 @@ class Pictures:
 
     def take(self, results):
         for seed, (images, labels) in results:
-            if seed % 10 == 3:
+            if is_validation(seed):
                 self.test_images.append(images)
                 self.test_labels.append(labels)
                 continue

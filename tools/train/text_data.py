@@ -153,6 +153,32 @@ NUMBERS_WEIGHT = 3.0  # they are fewer than faces, and read from one view each
 SIGNS_WEIGHT = 8.0  # a hundredth of the faces
 
 
+def text_weight(row):
+    """How often a patch is learnt from: far ones cannot be read; plain ones are many."""
+    if row["kind"] in NUMBERS:
+        return NUMBERS_WEIGHT
+    if row["kind"] in SIGNS:
+        return SIGNS_WEIGHT
+    if float(row["height_px"]) <= 9.0 or (row["text"] and float(row["distance_m"]) >= 16.0):
+        return 0.0
+    return 1.0 if row["text"] else 0.35
+
+
+def shares_read(right, texts, kinds, distances, heights):
+    """As a text: the share read rightly of faces by distance, of plain ones, of signs and of numbers."""
+    kinds, written = np.asarray(kinds), np.array([bool(text) for text in texts])
+    distances, heights = np.asarray(distances), np.asarray(heights)
+    face = ~np.isin(kinds, NUMBERS + SIGNS)
+    near = written & (distances < 10)
+    groups = [(f"{low}-{high} m", face & written & (distances >= low) & (distances < high))
+              for low, high in ((0, 6), (6, 10), (10, 15))]
+    groups += [("plain", face & ~written & (heights > 9.0)), ("guide", near & (kinds == "guide")),
+               ("limit", near & (kinds == "limit")), ("numbers", kinds == "number"),
+               ("upside down", kinds == "turned")]
+    return ", ".join(f"{name} {right[chosen].mean():.3f} of {chosen.sum()}"
+                     for name, chosen in groups if chosen.any())
+
+
 def text_files(folder):
     """Those of make_data.py --texts in a folder."""
     return glob.glob(os.path.join(folder, "g*", "*_texts.csv"))
@@ -164,6 +190,7 @@ class Crops:
 
     def __init__(self, folders, wanted):
         self.patches, self.texts, self.heights, self.distances, self.kinds = [], [], [], [], []
+        weights = []
         for path in sorted(path for folder in folders for path in text_files(folder)):
             if not wanted(int(os.path.basename(os.path.dirname(path))[1:])):
                 continue
@@ -176,15 +203,9 @@ class Crops:
                 self.heights.append(float(row["height_px"]))
                 self.distances.append(float(row["distance_m"]))
                 self.kinds.append(row["kind"])
+                weights.append(text_weight(row))
         self.heights, self.distances = np.array(self.heights), np.array(self.distances)
-        self.kinds = np.array(self.kinds)
-        has_text = np.array([bool(text) for text in self.texts], bool)
-        number = np.isin(self.kinds, NUMBERS)
-        sign = np.isin(self.kinds, SIGNS)
-        # Far faces cannot be read; plain ones are many.
-        useful = number | sign | ((self.heights > 9.0) & (~has_text | (self.distances < 16.0)))
-        self.weights = useful * np.select([number, sign, has_text],
-                                            [NUMBERS_WEIGHT, SIGNS_WEIGHT, 1.0], 0.35)
+        self.kinds, self.weights = np.array(self.kinds), np.array(weights)
         if self.weights.sum() > 0:
             self.weights = self.weights / self.weights.sum()
 

@@ -24,15 +24,11 @@ import torch  # noqa: E402
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from augment import augment  # noqa: E402
-from classes import IGNORE, NETWORKS  # noqa: E402
+from classes import IGNORE, NETWORKS, is_validation  # noqa: E402
 from dataset import Samples, as_labelled, cut, label_files  # noqa: E402
 from network import PICTURES, full_size, make_network, name_of, to_input  # noqa: E402
 from scores import Confusion, table  # noqa: E402
 from warm_start import load, settle  # noqa: E402
-
-
-def is_validation(garage):
-    return garage % 10 == 3
 
 
 def is_training(garage):

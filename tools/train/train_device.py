@@ -24,49 +24,11 @@ from classes import IGNORE, NETWORKS  # noqa: E402
 from device_data import Pictures, Reader, read_pictures  # noqa: E402
 from network import MEAN, PICTURES, SCALE, full_size, make_network  # noqa: E402
 from scores import Confusion, table  # noqa: E402
-from train import class_weights, save  # noqa: E402
+from device_training import Clock, check, learn  # noqa: E402
+from train import class_weights  # noqa: E402
 from warm_start import load, settle  # noqa: E402
 
 DICE = 0.7
-
-
-class Clock:
-    """How much of the time is spent, which a file beside the results may change."""
-
-    def __init__(self, minutes, folder):
-        self.start, self.minutes, self.path = time.time(), minutes, os.path.join(folder, "minutes")
-
-    def elapsed(self):
-        return time.time() - self.start
-
-    def done(self):
-        try:
-            with open(self.path) as file:
-                self.minutes = float(file.read())
-        except (OSError, ValueError):
-            pass
-        return self.elapsed() / (60.0 * self.minutes)
-
-
-def rate_at(done, step, highest):
-    return highest * min(1.0, (step + 1) / 300) * (0.5 * (1 + np.cos(np.pi * min(done, 1.0))) + 0.003)
-
-
-class Mean:
-    """Exponential mean of the weights, which is what gets exported."""
-
-    def __init__(self, network, decay=0.9985):
-        self.decay, self.network = decay, network
-        self.state = {k: v.detach().clone() for k, v in network.state_dict().items()}
-
-    @torch.no_grad()
-    def update(self, step):
-        decay = min(self.decay, (1 + step) / (10 + step))
-        now = self.network.state_dict()
-        floats = [k for k, v in now.items() if v.dtype.is_floating_point]
-        averages = [self.state[k] for k in floats]
-        torch._foreach_mul_(averages, decay)
-        torch._foreach_add_(averages, [now[k] for k in floats], alpha=1.0 - decay)
 
 
 def segmentation_loss(logits, labels, weight):
@@ -103,16 +65,6 @@ def validate(network, data, device, limit):
     return confusion.iou(), len(images[::step])
 
 
-def check(parser, arguments):
-    """Ends the program where it has no device, or no folder to read."""
-    if torch.device(arguments.device).type == "cuda" and not torch.cuda.is_available():
-        parser.error(f"--device {arguments.device}: torch finds none here (train.py and train_text.py "
-                     "learn on the processor; --device cpu tries this program there)")
-    for folder in arguments.data:
-        if not os.path.isdir(folder):
-            parser.error(f"--data {folder}: no such folder")
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -139,69 +91,46 @@ def main():
     reader = Reader(a.data, read_pictures, (pictures,), a.readers)
     reader.poll()  # its processes begin before the device is in use
     clock = Clock(a.minutes, a.out)
-    log = open(os.path.join(a.out, a.network + ".txt"), "a", buffering=1)
-
-    def say(text):
-        log.write(text + "\n")
-        print(text, flush=True)
-
     data = Pictures(a.device, len(classes))
     while data.images.count < a.begin_with or not data.test_images:
         data.take(reader.poll())
         time.sleep(0.5)
-    network = make_network(a.network, len(classes))
+    make = lambda: make_network(a.network, len(classes)).to(  # noqa: E731
+        a.device, memory_format=torch.channels_last)
+    network = make()
     if a.warm_start:
         network.load_state_dict(load(a.warm_start, network))
-    network = network.to(a.device, memory_format=torch.channels_last)
     if a.warm_start and a.warm_start.endswith(".onnx"):
         settle(network, [((data.batch(a.batch)[0] - MEAN) * SCALE) for _ in range(8)])
     floor, lines = ((classes.index("floor"), classes.index("slot_line")) if pictures == "bev"
                     else (None, None))
-    optimiser = torch.optim.AdamW(network.parameters(), lr=a.rate, weight_decay=1e-2)
-    mean = Mean(network)
-    say(f"{a.network}: {sum(p.numel() for p in network.parameters())} parameters, "
-        f"{data.images.count} pictures after {clock.elapsed():.0f} s")
-    step, losses, polled, said = 0, [], time.time(), time.time()
+    print(f"{a.network}: {sum(p.numel() for p in network.parameters())} parameters, "
+          f"{data.images.count} pictures after {clock.elapsed():.0f} s", flush=True)
+
     weight = class_weights(data.pixels).to(a.device)
-    half = torch.bfloat16
-    while True:
-        done = clock.done() if step % 20 == 0 else done
-        for group in optimiser.param_groups:
-            group["lr"] = rate_at(done, step, a.rate)
+
+    def take():
+        nonlocal weight
+        data.take(reader.poll())
+        weight = class_weights(data.pixels).to(a.device)
+
+    def loss_of():
         with torch.no_grad():
             images, labels = data.batch(a.batch)
             images, labels = transform(images, labels, IGNORE, 0.6, pictures == "raw")
             images = (augment(images, labels, floor, lines, a.plain) - MEAN) * SCALE
             images = images.contiguous(memory_format=torch.channels_last)
-        with torch.autocast(torch.device(a.device).type, dtype=half):
+        with torch.autocast(torch.device(a.device).type, dtype=torch.bfloat16):
             logits = network(images)
-        loss = segmentation_loss(logits, labels, weight)
-        optimiser.zero_grad(set_to_none=True)
-        loss.backward()
-        torch.nn.utils.clip_grad_norm_(network.parameters(), 5.0)
-        optimiser.step()
-        step += 1
-        mean.update(step)
-        losses.append(loss.detach())
-        if time.time() - polled > 10:
-            polled = time.time()
-            if done < 0.9:
-                data.take(reader.poll())
-                weight = class_weights(data.pixels).to(a.device)
-        if time.time() - said > 60 or done >= 1.0:
-            said = time.time()
-            best = make_network(a.network, len(classes)).to(a.device, memory_format=torch.channels_last)
-            best.load_state_dict(mean.state)
-            iou, count = validate(best, data, a.device, 200 if done < 1.0 else 1000)
-            save(os.path.join(a.out, a.network + ".pt"),
-                 {"average": {k: v.cpu() for k, v in mean.state.items()}, "step": step,
-                  "name": a.network, "classes": classes})
-            say(f"step {step}  {clock.elapsed():.0f} s  done {done:.2f}  "
-                f"loss {torch.stack(losses).mean():.3f}  {data.images.count} pictures  mean IoU "
-                f"{np.nanmean(iou):.3f} of {count}  {table(classes, iou)}")
-            losses = []
-        if done >= 1.0:
-            break
+        return segmentation_loss(logits, labels, weight)
+
+    def judge(best, done):
+        iou, count = validate(best, data, a.device, 200 if done < 1.0 else 1000)
+        return (f"{data.images.count} pictures  mean IoU {np.nanmean(iou):.3f} of {count}  "
+                f"{table(classes, iou)}")
+
+    learn(a, clock, network, make, loss_of, take, judge,
+          os.path.join(a.out, a.network + ".pt"), {"name": a.network, "classes": classes})
     reader.pool.shutdown(wait=False, cancel_futures=True)
     return 0
 

@@ -19,13 +19,10 @@ import numpy as np  # noqa: E402
 import torch  # noqa: E402
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from text_data import NUMBERS, SIGNS, Crops, augmented, fonts, rendered, text_files  # noqa: E402
+from classes import is_validation  # noqa: E402
+from text_data import Crops, augmented, fonts, rendered, shares_read, text_files  # noqa: E402
 from text_network import WIDTHS, TextNetwork, column_loss, name_of, read, sequence_loss, to_input  # noqa: E402
 from warm_start import load, settle, stored_weights  # noqa: E402
-
-
-def is_validation(garage):
-    return garage % 10 == 3
 
 
 def render_many(rng, count):
@@ -66,20 +63,8 @@ def report(network, crops, drawn):
     right, _ = accuracy(network, [p for p, _, _ in drawn], [t for _, t, _ in drawn])
     text = f"rendered {right.mean():.3f}"
     if len(crops):
-        right, found = accuracy(network, crops.patches, crops.texts)
-        written = np.array([bool(t) for t in crops.texts])
-        face = ~np.isin(crops.kinds, NUMBERS + SIGNS)
-        for low, high in ((0, 6), (6, 10), (10, 15)):
-            chosen = face & written & (crops.distances >= low) & (crops.distances < high)
-            text += f", {low}-{high} m {right[chosen].mean():.3f} of {chosen.sum()}"
-        near = written & (crops.distances < 10)
-        for name, chosen in (("plain", face & ~written & (crops.heights > 9.0)),
-                             ("guide", near & (crops.kinds == "guide")),
-                             ("limit", near & (crops.kinds == "limit")),
-                             ("numbers", crops.kinds == "number"),
-                             ("upside down", crops.kinds == "turned")):
-            if chosen.any():
-                text += f", {name} {right[chosen].mean():.3f} of {chosen.sum()}"
+        right, _ = accuracy(network, crops.patches, crops.texts)
+        text += ", " + shares_read(right, crops.texts, crops.kinds, crops.distances, crops.heights)
     return text
 
 

@@ -20,11 +20,11 @@ from torch.nn import functional as F
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from batch_augment import Draw, blurred, coarser  # noqa: E402
-from device_data import Growing, Reader, read_texts, text_weight  # noqa: E402
-from text_data import NUMBERS, SIGNS, fonts, rendered  # noqa: E402
+from classes import is_validation  # noqa: E402
+from device_data import Growing, Reader, read_texts  # noqa: E402
+from device_training import Clock, check, learn  # noqa: E402
+from text_data import fonts, rendered, shares_read, text_weight  # noqa: E402
 from text_network import HEIGHT, MEAN, SCALE, WIDTH, WIDTHS, TextNetwork, encode, read  # noqa: E402
-from train import save  # noqa: E402
-from train_device import Clock, Mean, check, rate_at  # noqa: E402
 from warm_start import load, settle  # noqa: E402
 
 LONGEST = 24  # letters of a patch
@@ -38,7 +38,7 @@ class Texts:
 
     def take(self, results):
         for seed, (patches, rows) in results:
-            if seed % 10 == 3:
+            if is_validation(seed):
                 self.test.append((patches, rows))
                 continue
             fits = [k for k, row in enumerate(rows) if len(row["text"]) <= LONGEST]
@@ -101,22 +101,9 @@ def report(network, test, device):
         x = torch.from_numpy(patches[first : first + 512]).to(device).permute(0, 3, 1, 2).float()
         found += read((network((x - MEAN) * SCALE)).cpu())
     right = np.array([a == row["text"] for a, row in zip(found, rows)])
-    written = np.array([bool(row["text"]) for row in rows])
-    kinds = np.array([row["kind"] for row in rows])
-    distance = np.array([float(row["distance_m"]) for row in rows])
-    high = np.array([float(row["height_px"]) for row in rows]) > 9.0
-    face = ~np.isin(kinds, NUMBERS + SIGNS)
-    said = []
-    for name, chosen in (("0-6 m", face & written & (distance < 6)),
-                         ("6-10 m", face & written & (distance >= 6) & (distance < 10)),
-                         ("10-15 m", face & written & (distance >= 10) & (distance < 15)),
-                         ("plain", face & ~written & high),
-                         ("guide", (kinds == "guide") & (distance < 10)),
-                         ("limit", (kinds == "limit") & (distance < 10)),
-                         ("numbers", kinds == "number"), ("upside down", kinds == "turned")):
-        if chosen.any():
-            said.append(f"{name} {right[chosen].mean():.3f} of {chosen.sum()}")
-    return ", ".join(said)
+    return shares_read(right, [row["text"] for row in rows], [row["kind"] for row in rows],
+                       [float(row["distance_m"]) for row in rows],
+                       [float(row["height_px"]) for row in rows])
 
 
 def main():
@@ -153,55 +140,29 @@ def main():
     while data.patches.count < a.begin_with or not data.test:
         data.take(reader.poll())
         time.sleep(0.5)
-    network = TextNetwork(a.network)
+    make = lambda: TextNetwork(a.network).to(a.device)  # noqa: E731
+    network = make()
     if a.warm_start:
         network.load_state_dict(load(a.warm_start, network))
-    network = network.to(a.device)
     if a.warm_start and a.warm_start.endswith(".onnx"):
         settle(network, [(data.batch(a.batch)[0] - MEAN) * SCALE for _ in range(8)])
-    optimiser = torch.optim.AdamW(network.parameters(), lr=a.rate, weight_decay=1e-2)
-    mean = Mean(network)
-    log = open(os.path.join(a.out, "text.txt"), "a", buffering=1)
-    step, losses, polled, said = 0, [], time.time(), time.time()
     of_drawn = int(a.rendered_share * a.batch)
-    while True:
-        done = clock.done() if step % 20 == 0 else done
-        for group in optimiser.param_groups:
-            group["lr"] = rate_at(done, step, a.rate)
+
+    def loss_of():
         with torch.no_grad():
-            parts = [drawn.batch(of_drawn), data.batch(a.batch - of_drawn)]
-            patches, symbols, lengths = (torch.cat(pair) for pair in zip(*parts))
+            both = [drawn.batch(of_drawn), data.batch(a.batch - of_drawn)]
+            patches, symbols, lengths = (torch.cat(pair) for pair in zip(*both))
             patches = (changed(patches) - MEAN) * SCALE
         with torch.autocast(torch.device(a.device).type, dtype=torch.bfloat16):
             logits = network(patches)
         log_p = F.log_softmax(logits.float()[:, :, 0], 1).permute(2, 0, 1)
         steps = torch.full((a.batch,), log_p.shape[0], device=a.device)
-        loss = F.ctc_loss(log_p, symbols, steps, lengths, reduction="sum",
+        return F.ctc_loss(log_p, symbols, steps, lengths, reduction="sum",
                           zero_infinity=True) / a.batch
-        optimiser.zero_grad(set_to_none=True)
-        loss.backward()
-        torch.nn.utils.clip_grad_norm_(network.parameters(), 5.0)
-        optimiser.step()
-        step += 1
-        mean.update(step)
-        losses.append(loss.detach())
-        if time.time() - polled > 10 and done < 0.9:
-            polled = time.time()
-            data.take(reader.poll())
-        if time.time() - said > 60 or done >= 1.0:
-            said = time.time()
-            best = TextNetwork(a.network).to(a.device)
-            best.load_state_dict(mean.state)
-            save(os.path.join(a.out, "text.pt"),
-                 {"average": {k: v.cpu() for k, v in mean.state.items()}, "step": step})
-            text = (f"step {step}  {clock.elapsed():.0f} s  done {done:.2f}  loss "
-                    f"{torch.stack(losses).mean():.3f}  {data.patches.count} patches  "
-                    f"{report(best, data.test, a.device)}")
-            log.write(text + "\n")
-            print(text, flush=True)
-            losses = []
-        if done >= 1.0:
-            break
+
+    learn(a, clock, network, make, loss_of, lambda: data.take(reader.poll()),
+          lambda best, done: f"{data.patches.count} patches  {report(best, data.test, a.device)}",
+          os.path.join(a.out, "text.pt"), {})
     reader.pool.shutdown(wait=False, cancel_futures=True)
     return 0
 

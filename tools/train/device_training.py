@@ -1,0 +1,94 @@
+# SPDX-FileCopyrightText: 2026 The Parkade authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the trainings on a graphics processor share: how long they go on, and how."""
+import os
+import time
+
+import numpy as np
+import torch
+
+from train import save
+
+
+class Clock:
+    """How much of the time is spent, which a file beside the results may change."""
+
+    def __init__(self, minutes, folder):
+        self.start, self.minutes, self.path = time.time(), minutes, os.path.join(folder, "minutes")
+
+    def elapsed(self):
+        return time.time() - self.start
+
+    def done(self):
+        try:
+            with open(self.path) as file:
+                self.minutes = float(file.read())
+        except (OSError, ValueError):
+            pass
+        return self.elapsed() / (60.0 * self.minutes)
+
+
+def rate_at(done, step, highest):
+    return highest * min(1.0, (step + 1) / 300) * (0.5 * (1 + np.cos(np.pi * min(done, 1.0))) + 0.003)
+
+
+class Mean:
+    """Exponential mean of the weights, which is what gets exported."""
+
+    def __init__(self, network, decay=0.9985):
+        self.decay, self.network = decay, network
+        self.state = {k: v.detach().clone() for k, v in network.state_dict().items()}
+
+    @torch.no_grad()
+    def update(self, step):
+        decay = min(self.decay, (1 + step) / (10 + step))
+        now = self.network.state_dict()
+        floats = [k for k, v in now.items() if v.dtype.is_floating_point]
+        averages = [self.state[k] for k in floats]
+        torch._foreach_mul_(averages, decay)
+        torch._foreach_add_(averages, [now[k] for k in floats], alpha=1.0 - decay)
+
+
+def check(parser, arguments):
+    """Ends the program where it has no device, or no folder to read."""
+    if torch.device(arguments.device).type == "cuda" and not torch.cuda.is_available():
+        parser.error(f"--device {arguments.device}: torch finds none here (train.py and train_text.py "
+                     "learn on the processor; --device cpu tries this program there)")
+    for folder in arguments.data:
+        if not os.path.isdir(folder):
+            parser.error(f"--data {folder}: no such folder")
+
+
+def learn(a, clock, network, make, loss_of, take, judge, path, said_too):
+    """Until the time is spent. make(): a network such as this one on its device; loss_of(): of the next batch;
+    take(): takes in what was drawn since; judge(best, done): what to say of the mean of the weights, which
+    goes to path with what said_too holds."""
+    log = open(os.path.splitext(path)[0] + ".txt", "a", buffering=1)
+    optimiser = torch.optim.AdamW(network.parameters(), lr=a.rate, weight_decay=1e-2)
+    mean = Mean(network)
+    step, losses, polled, said, done = 0, [], time.time(), time.time(), 0.0
+    while done < 1.0:
+        done = clock.done() if step % 20 == 0 else done
+        for group in optimiser.param_groups:
+            group["lr"] = rate_at(done, step, a.rate)
+        loss = loss_of()
+        optimiser.zero_grad(set_to_none=True)
+        loss.backward()
+        torch.nn.utils.clip_grad_norm_(network.parameters(), 5.0)
+        optimiser.step()
+        step += 1
+        mean.update(step)
+        losses.append(loss.detach())
+        if time.time() - polled > 10 and done < 0.9:
+            polled = time.time()
+            take()
+        if time.time() - said > 60 or done >= 1.0:
+            said = time.time()
+            best = make()
+            best.load_state_dict(mean.state)
+            save(path, {"average": {k: v.cpu() for k, v in mean.state.items()}, "step": step, **said_too})
+            text = (f"step {step}  {clock.elapsed():.0f} s  done {done:.2f}  "
+                    f"loss {torch.stack(losses).mean():.3f}  {judge(best, done)}")
+            log.write(text + "\n")
+            print(text, flush=True)
+            losses = []
