@@ -5,8 +5,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <deque>
+#include <future>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -21,6 +23,20 @@
 
 namespace parkade {
 namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point begin) {
+  return millisecondsBetween(begin, Clock::now());
+}
+
+// Waits at the end of its scope.
+struct WaitFor {
+  std::future<void>& done;
+  ~WaitFor() {
+    if (done.valid()) done.wait();
+  }
+};
 
 // About the vehicle's z: of all cameras, the mean of what each has turned.
 double commonTurn(const std::vector<SE3>& before, const std::vector<SE3>& after) {
@@ -66,6 +82,16 @@ struct SemanticFrontEnd::Impl {
     return *sight;
   }
 
+  struct View {
+    GroundPlaneEstimate floor;
+    PoseEstimate now;
+    std::vector<RaisedPoint> raised;
+  };
+  View nextView();
+  // What the stitched picture shows.
+  Result<SemanticFrame> lookDown(const FrameSet& frames, const View& view);
+  void extract(const FrameSet& frames, const View& view, SemanticFrame& frame);
+
   SemanticFrontEndOptions options;
   Rig rig;
   BevStitcher stitcher;
@@ -75,14 +101,9 @@ struct SemanticFrontEnd::Impl {
   AgentTracker tracker;
   std::unique_ptr<ZoneMarkerFrontEnd> zone_markers;  // null: there are no networks for it
   std::unique_ptr<PaintedNumberFrontEnd> numbers;    // null likewise
-  struct View {
-    GroundPlaneEstimate floor;
-    PoseEstimate now;
-    std::vector<RaisedPoint> raised;
-  };
-  std::vector<SE3> cameras;    // where they are taken to sit
-  std::vector<SE3> told;       // and where the calibration says
-  std::optional<View> newest;  // of the last addOdometry()
+  std::vector<SE3> cameras;                          // where they are taken to sit
+  std::vector<SE3> told;                             // and where the calibration says
+  std::optional<View> newest;                        // of the last addOdometry()
   std::optional<PoseEstimate> last_look;
   // Taken by take(), used by look(), which may work in another thread meanwhile.
   std::mutex views_mutex;
@@ -94,6 +115,61 @@ struct SemanticFrontEnd::Impl {
   StageClock number_clock{"slot numbers"};
   StageClock zone_clock{"zone markers"};
 };
+
+SemanticFrontEnd::Impl::View SemanticFrontEnd::Impl::nextView() {
+  const std::lock_guard lock(views_mutex);
+  PARKADE_CHECK(!views.empty(), "no picture was taken");
+  View view = std::move(views.front());
+  views.pop_front();
+  return view;
+}
+
+Result<SemanticFrame> SemanticFrontEnd::Impl::lookDown(const FrameSet& frames, const View& view) {
+  Clock::time_point begin = Clock::now();
+  bev = stitcher.stitch(frames, view.floor.attitude, view.floor.relief);
+  stitch_clock.add(since(begin));
+  begin = Clock::now();
+  Result<BevLabels> labels = network.segment(bev);
+  if (!labels) return labels.error();
+  segment_clock.add(since(begin));
+  begin = Clock::now();
+  SemanticFrame frame;
+  frame.labels = std::move(labels).value();
+  frame.labels.t_ns = frames.t_ns;
+  extract(frames, view, frame);
+  feature_clock.add(since(begin));
+  if (numbers == nullptr) return frame;
+  begin = Clock::now();
+  const Status read = numbers->read(frames, sightOf(frames).views, view.now, frame);
+  if (!read) return read.error();
+  number_clock.add(since(begin));
+  return frame;
+}
+
+// Features of the labels.
+void SemanticFrontEnd::Impl::extract(const FrameSet& frames, const View& view,
+                                     SemanticFrame& frame) {
+  frame.attitude = view.floor.attitude;
+  frame.relief = view.floor.relief;
+  frame.rig_turn = commonTurn(told, cameras);
+  frame.attitude_sigma = std::max(view.floor.sigma_pitch, view.floor.sigma_roll);
+  const Sight& sight = sightOf(frames);
+  frame.line_points =
+      linePointsFromLabels(frame.labels, sight.views, frame.attitude_sigma, options.lines);
+  frame.line_segments = segmentsOf(frame.line_points);
+  // Slots need lines to a fraction of a pixel; registration has done better with the labels' own.
+  const Lines lines = extractLines(bev, frame.labels, frame.attitude_sigma, options.slot_lines);
+  frame.slots =
+      extractSlots(bev, frame.labels, lines.segments, sight.views,
+                   {std::hypot(frame.attitude_sigma, options.slot_lines.sight_sigma_deg * kDegree),
+                    view.floor.sigma_height},
+                   options.slots);
+  FoundObjects found = sight.objects.extract(frame.labels, frame.slots, frame.attitude_sigma);
+  frame.objects = std::move(found.objects);
+  frame.moving = tracker.update(found.agents, SE2::fromSE3(view.now.T_odom_vehicle), frames.t_ns);
+  frame.raised = view.raised;
+  frame.smear = sight.smear.find(frame.labels, frame.raised);
+}
 
 SemanticFrontEnd::SemanticFrontEnd(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 SemanticFrontEnd::~SemanticFrontEnd() = default;
@@ -171,64 +247,24 @@ void SemanticFrontEnd::placeCameras(const std::vector<SE3>& T_vehicle_cam) {
   }
 }
 
-Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames) {
-  using Clock = std::chrono::steady_clock;
-  const auto since = [](Clock::time_point begin) {
-    return millisecondsBetween(begin, Clock::now());
-  };
+Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames, ThreadPool& beside) {
   Impl& m = *impl_;
-  Impl::View view;
-  {
-    const std::lock_guard lock(m.views_mutex);
-    PARKADE_CHECK(!m.views.empty(), "no picture was taken");
-    view = std::move(m.views.front());
-    m.views.pop_front();
-  }
-  Clock::time_point begin = Clock::now();
-  m.bev = m.stitcher.stitch(frames, view.floor.attitude, view.floor.relief);
-  const BevImage& bev = m.bev;
-  m.stitch_clock.add(since(begin));
-  begin = Clock::now();
-  Result<BevLabels> labels = m.network.segment(bev);
-  if (!labels) return labels.error();
-  m.segment_clock.add(since(begin));
-  begin = Clock::now();
-  SemanticFrame frame;
-  frame.labels = std::move(labels).value();
-  frame.labels.t_ns = frames.t_ns;
-  frame.attitude = view.floor.attitude;
-  frame.relief = std::move(view.floor.relief);
-  frame.rig_turn = commonTurn(m.told, m.cameras);
-  frame.attitude_sigma = std::max(view.floor.sigma_pitch, view.floor.sigma_roll);
-  const Sight& sight = m.sightOf(frames);
-  frame.line_points =
-      linePointsFromLabels(frame.labels, sight.views, frame.attitude_sigma, m.options.lines);
-  frame.line_segments = segmentsOf(frame.line_points);
-  // Slots need lines to a fraction of a pixel; registration has done better with the labels' own.
-  const Lines lines = extractLines(bev, frame.labels, frame.attitude_sigma, m.options.slot_lines);
-  frame.slots = extractSlots(
-      bev, frame.labels, lines.segments, sight.views,
-      {std::hypot(frame.attitude_sigma, m.options.slot_lines.sight_sigma_deg * kDegree),
-       view.floor.sigma_height},
-      m.options.slots);
-  FoundObjects found = sight.objects.extract(frame.labels, frame.slots, frame.attitude_sigma);
-  frame.objects = std::move(found.objects);
-  frame.moving = m.tracker.update(found.agents, SE2::fromSE3(view.now.T_odom_vehicle), frames.t_ns);
-  frame.raised = std::move(view.raised);
-  frame.smear = sight.smear.find(frame.labels, frame.raised);
-  m.feature_clock.add(since(begin));
-  if (m.numbers != nullptr) {
-    begin = Clock::now();
-    const Status read = m.numbers->read(frames, sight.views, view.now, frame);
-    if (!read) return read.error();
-    m.number_clock.add(since(begin));
-  }
-  if (m.zone_markers == nullptr) return frame;
-  begin = Clock::now();
-  auto markers = m.zone_markers->look(frames, view.now, view.floor.attitude);
+  const Impl::View view = m.nextView();
+  // Markers need nothing of the stitched picture, and take about as long.
+  Result<std::vector<ObjectObservation>> markers = std::vector<ObjectObservation>();
+  std::future<void> markers_done = beside.submit([&] {
+    if (m.zone_markers == nullptr) return;
+    const Clock::time_point begin = Clock::now();
+    markers = m.zone_markers->look(frames, view.now, view.floor.attitude);
+    m.zone_clock.add(since(begin));
+  });
+  // They use what lies here, whatever happens.
+  const WaitFor wait{markers_done};
+  Result<SemanticFrame> frame = m.lookDown(frames, view);
+  markers_done.get();
+  if (!frame) return frame.error();
   if (!markers) return markers.error();
-  for (ObjectObservation& marker : *markers) frame.objects.push_back(std::move(marker));
-  m.zone_clock.add(since(begin));
+  for (ObjectObservation& marker : *markers) frame->objects.push_back(std::move(marker));
   return frame;
 }
 

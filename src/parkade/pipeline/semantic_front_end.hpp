@@ -12,6 +12,7 @@
 #include "parkade/core/result.hpp"
 #include "parkade/pipeline/painted_number_front_end.hpp"
 #include "parkade/pipeline/stage_clock.hpp"
+#include "parkade/pipeline/thread_pool.hpp"
 #include "parkade/pipeline/zone_marker_front_end.hpp"
 #include "parkade/semantics/lines/label_lines.hpp"
 #include "parkade/semantics/lines/line_extraction.hpp"
@@ -82,8 +83,9 @@ class SemanticFrontEnd {
   /// Where the cameras sit by what is known now, one a camera: from the next look() on. Small moves
   /// are left until they add up.
   void placeCameras(const std::vector<SE3>& T_vehicle_cam);
-  /// The features of the first frame set that was taken.
-  Result<SemanticFrame> look(const FrameSet& frames);
+  /// The features of the first frame set that was taken. The cameras' own pictures are looked at in
+  /// `beside`, the stitched one in the caller.
+  Result<SemanticFrame> look(const FrameSet& frames, ThreadPool& beside);
 
   /// The stitched picture that the last look() saw.
   [[nodiscard]] const BevImage& picture() const;

@@ -27,8 +27,11 @@ SemanticQueue::SemanticQueue(std::unique_ptr<SemanticFrontEnd> front_end, Semant
       front_end_(std::move(front_end)),
       mapper_(mapper),
       observers_(observers),
-      pool_(options.own_thread ? 1 : 0) {
-  if (options.live && options.own_thread) pool_.submit(giveWay);
+      beside_(options.own_threads ? 1 : 0),
+      pool_(options.own_threads ? 1 : 0) {
+  if (!options.live || !options.own_threads) return;
+  pool_.submit(giveWay);
+  beside_.submit(giveWay);
 }
 
 bool SemanticQueue::anyDue(int number) const {
@@ -68,7 +71,7 @@ void SemanticQueue::take(FrameSet frames, int number, const SE3& T_odom_vehicle,
 void SemanticQueue::work(Look& look) {
   look.begin = BusyTime::Clock::now();
   front_end_->placeCameras(look.cameras);
-  look.frame = front_end_->look(look.frames);
+  look.frame = front_end_->look(look.frames, beside_);
   look.frames.images.clear();
   if (look.frame) look.views = front_end_->views();
   look.end = BusyTime::Clock::now();

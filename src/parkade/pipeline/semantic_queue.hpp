@@ -19,9 +19,9 @@ namespace parkade {
 class PipelineObserver;
 
 struct SemanticQueueOptions {
-  int delay = 2;           ///< frame sets until features enter the map
-  bool live = false;       ///< never wait for features: pass pictures over instead
-  bool own_thread = true;  ///< else it works in its caller's
+  int delay = 2;            ///< frame sets until features enter the map
+  bool live = false;        ///< never wait for features: pass pictures over instead
+  bool own_threads = true;  ///< two; else it works in its caller's
 };
 
 /// The semantic side of a run: has pictures looked at beside everything else, and corrects the
@@ -29,7 +29,7 @@ struct SemanticQueueOptions {
 ///
 /// Features enter a fixed number of frame sets after their picture, waited for where they are not
 /// ready: what comes out does not depend on how fast they are made. A live one does not wait: they
-/// enter when they are ready, no new picture is taken while some are overdue, and its thread gives
+/// enter when they are ready, no new picture is taken while some are overdue, and its threads give
 /// way to others. Where the computer keeps up, both give the same.
 class SemanticQueue {
  public:
@@ -84,7 +84,8 @@ class SemanticQueue {
   BusyTime busy_;
   Status status_;
   int passed_over_ = 0;
-  ThreadPool pool_;  // last: its thread uses what is above
+  ThreadPool beside_;  // for what front_end_ looks at meanwhile
+  ThreadPool pool_;    // last: its thread uses what is above
 };
 
 }  // namespace parkade

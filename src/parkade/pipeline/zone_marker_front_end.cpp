@@ -39,10 +39,12 @@ struct ZoneMarkerFrontEnd::Impl {
     const Status signs_seen =
         signs.add(labels->labels, image, masks[camera], eye.camera, T_up_cam, t_ns, reader);
     if (!signs_seen) return signs_seen.error();
+    const auto to_read = [&](const ZoneMarkerSight& sight) {
+      return !tracker.needsNoReading(viewOf(sight, T_up_cam.translation()));
+    };
     return viewsOf(findZoneMarkers(labels->labels, image, masks[camera], eye.camera,
-                                   T_up_cam.rotation(), options.faces),
-                   T_up_cam.translation(), &reader, options.letters,
-                   [&](const ZoneMarkerView& view) { return tracker.needsNoReading(view); });
+                                   T_up_cam.rotation(), options.faces, to_read),
+                   T_up_cam.translation(), &reader, options.letters);
   }
 };
 

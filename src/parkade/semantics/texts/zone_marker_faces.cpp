@@ -155,7 +155,8 @@ FittedFace middleOf(const FittedFace& face, double share) {
 
 std::vector<ZoneMarkerSight> find(const cv::Mat& labels, const cv::Mat& image, const cv::Mat& mask,
                                   const Camera& camera, const SO3& R_level_cam,
-                                  const Search& search, const ZoneMarkerFaceOptions& options) {
+                                  const Search& search, const ZoneMarkerFaceOptions& options,
+                                  const WantedSight& wanted) {
   PARKADE_CHECK(labels.type() == CV_8UC1, "labels of type {}", labels.type());
   PARKADE_CHECK(image.cols == camera.width() && image.rows == camera.height(),
                 "picture of {} x {} px, the camera has {} x {}", image.cols, image.rows,
@@ -183,7 +184,7 @@ std::vector<ZoneMarkerSight> find(const cv::Mat& labels, const cv::Mat& image, c
       }
       return out;
     };
-    if (faces < options.max_faces) {
+    if (faces < options.max_faces && (wanted == nullptr || wanted(found->sight))) {
       found->sight.faces = straightened(found->marker.faces);
       found->sight.other_faces = straightened(found->marker.other_faces);
       faces += static_cast<int>(found->sight.faces.size());
@@ -198,8 +199,9 @@ std::vector<ZoneMarkerSight> find(const cv::Mat& labels, const cv::Mat& image, c
 std::vector<ZoneMarkerSight> findZoneMarkers(const cv::Mat& labels, const cv::Mat& image,
                                              const cv::Mat& mask, const Camera& camera,
                                              const SO3& R_level_cam,
-                                             const ZoneMarkerFaceOptions& options) {
-  return find(labels, image, mask, camera, R_level_cam, {}, options);
+                                             const ZoneMarkerFaceOptions& options,
+                                             const WantedSight& wanted) {
+  return find(labels, image, mask, camera, R_level_cam, {}, options, wanted);
 }
 
 std::vector<ZoneMarkerSight> findSigns(const cv::Mat& labels, const cv::Mat& image,
@@ -209,7 +211,7 @@ std::vector<ZoneMarkerSight> findSigns(const cv::Mat& labels, const cv::Mat& ima
   constexpr double kInsideRing = 0.85;  // of a round plate's mean height over its columns
   const bool limit = sign == SemanticClass::kSpeedLimitSign;
   return find(labels, image, mask, camera, R_level_cam, {sign, false, limit ? kInsideRing : 1.0},
-              options);
+              options, nullptr);
 }
 
 }  // namespace parkade

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <functional>
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
@@ -62,6 +63,9 @@ struct ZoneMarkerSight {
   std::vector<ZoneMarkerFace> other_faces;
 };
 
+/// Of a sight without faces: whether they shall be straightened.
+using WantedSight = std::function<bool(const ZoneMarkerSight&)>;
+
 /// Finds zone markers in the labels of a camera's picture and straightens their faces.
 ///
 /// Everything is measured in a picture that a level camera would take in the marker's direction:
@@ -71,11 +75,12 @@ struct ZoneMarkerSight {
 ///
 /// labels: CV_8UC1 (SemanticClass), of any size; the picture that the camera gave, shrunk. mask:
 /// CV_8UC1 of the camera's picture, 0 where the own car is; may be empty. R_level_cam: from the
-/// camera to axes with z up.
+/// camera to axes with z up. wanted: empty for all.
 std::vector<ZoneMarkerSight> findZoneMarkers(const cv::Mat& labels, const cv::Mat& image,
                                              const cv::Mat& mask, const Camera& camera,
                                              const SO3& R_level_cam,
-                                             const ZoneMarkerFaceOptions& options);
+                                             const ZoneMarkerFaceOptions& options,
+                                             const WantedSight& wanted = nullptr);
 
 /// The same for signs of a class: one face each, of a speed-limit sign the middle of the plate
 /// inside its ring.

@@ -114,17 +114,20 @@ Result<ReadMarker> readMarker(const ZoneMarkerSight& sight, ZoneTextReader& read
   return read;
 }
 
-Result<std::vector<ZoneMarkerView>> viewsOf(
-    const std::vector<ZoneMarkerSight>& sights, const Eigen::Vector3d& eye, ZoneTextReader* reader,
-    const std::string& only, const std::function<bool(const ZoneMarkerView&)>& known) {
+ZoneMarkerView viewOf(const ZoneMarkerSight& sight, const Eigen::Vector3d& eye) {
+  return {eye, sight.ray_level, sight.sigma, sight.height_ratio, sight.height_sigma,
+          {},  !sight.cut};
+}
+
+Result<std::vector<ZoneMarkerView>> viewsOf(const std::vector<ZoneMarkerSight>& sights,
+                                            const Eigen::Vector3d& eye, ZoneTextReader* reader,
+                                            const std::string& only) {
   std::vector<ZoneMarkerView> views;
   for (const ZoneMarkerSight& sight : sights) {
-    ZoneMarkerView view{eye, sight.ray_level, sight.sigma, sight.height_ratio, sight.height_sigma,
-                        {},  !sight.cut};
-    const bool read_it =
-        reader != nullptr && !sight.faces.empty() && (known == nullptr || !known(view));
+    const bool read_it = reader != nullptr && !sight.faces.empty();
     // Where the middle is not seen a view places nothing, but may be read.
     if (sight.cut && !read_it) continue;
+    ZoneMarkerView view = viewOf(sight, eye);
     if (read_it) {
       Result<ReadMarker> read = readMarker(sight, *reader, only);
       if (!read) return read.error();

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -27,13 +26,15 @@ struct ReadMarker {
 Result<ReadMarker> readMarker(const ZoneMarkerSight& sight, ZoneTextReader& reader,
                               const std::string& only = {});
 
-/// What one camera's sights say to the tracker: those seen whole, from the camera's place `eye` in
-/// the axes of their rays. `reader` reads their faces, from the characters `only` (empty: all);
-/// without a reader nothing is read, nor what `known` (empty: nothing) says need not be. Fails as
-/// the reader does.
-Result<std::vector<ZoneMarkerView>> viewsOf(
-    const std::vector<ZoneMarkerSight>& sights, const Eigen::Vector3d& eye, ZoneTextReader* reader,
-    const std::string& only = {},
-    const std::function<bool(const ZoneMarkerView&)>& known = nullptr);
+/// What a sight says to the tracker before it is read. eye: the camera's place in the axes of the
+/// sight's ray.
+ZoneMarkerView viewOf(const ZoneMarkerSight& sight, const Eigen::Vector3d& eye);
+
+/// What one camera's sights say to the tracker: those seen whole, and those that are read. `reader`
+/// reads their faces, from the characters `only` (empty: all); without one nothing is read. Fails
+/// as the reader does.
+Result<std::vector<ZoneMarkerView>> viewsOf(const std::vector<ZoneMarkerSight>& sights,
+                                            const Eigen::Vector3d& eye, ZoneTextReader* reader,
+                                            const std::string& only = {});
 
 }  // namespace parkade
