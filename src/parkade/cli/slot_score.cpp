@@ -13,18 +13,16 @@
 #include <optional>
 
 #include "parkade/cli/sample_score.hpp"
+#include "parkade/cli/slot_truth.hpp"
 #include "parkade/eval/statistics.hpp"
-#include "parkade/geometry/so3.hpp"
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
 #include "parkade/pipeline/stitched_views.hpp"
 #include "parkade/semantics/drawing/draw_labels.hpp"
 #include "parkade/semantics/drawing/draw_slots.hpp"
-#include "parkade/semantics/label_probe.hpp"
 #include "parkade/semantics/lines/line_extraction.hpp"
 #include "parkade/semantics/networks/segmentation.hpp"
 #include "parkade/semantics/slots/slot_extraction.hpp"
-#include "parkade/types/level_frame.hpp"
 
 namespace parkade::cli {
 namespace {
@@ -34,12 +32,6 @@ using Eigen::Vector2d;
 constexpr double kSlotReach = 8.0;  // m from the picture's middle
 constexpr double kMatch = 0.5;      // m: entrance corners nearer than this are the same
 constexpr std::array<double, 5> kSlotBins = {0.0, 3.0, 5.0, 6.5, 8.0};
-
-struct TrueSlot {
-  SlotObservation slot;
-  bool occupied = false;
-  bool counts = false;  // in the picture, its entrance in sight, its lines not worn away
-};
 
 class SlotScore : public SampleScore {
  public:
@@ -77,7 +69,7 @@ class SlotScore : public SampleScore {
         extractSlots(sample.bev, labels, lines.segments, views_,
                      {options_.attitude_sigma, options_.height_sigma}, {},
                      options_.trials.empty() ? nullptr : &trials);
-    const std::vector<TrueSlot> slots = trueSlots(sampler, sample, truth);
+    const std::vector<TrueSlot> slots = trueSlots(sampler, sample, truth, kSlotReach);
     if (Status status = writeTrials(trials, slots); !status) return status;
     compare(sample.bev.geometry, found, slots);
     if (options_.pictures.empty()) return {};
@@ -97,9 +89,6 @@ class SlotScore : public SampleScore {
     int found = 0;
   };
 
-  [[nodiscard]] std::vector<TrueSlot> trueSlots(const SemanticSampler& sampler,
-                                                const SemanticSample& sample,
-                                                const BevLabels& truth) const;
   void compare(const BevGeometry& geometry, const std::vector<SlotObservation>& found,
                const std::vector<TrueSlot>& slots);
   Status writeTrials(const std::vector<SlotTrial>& trials, const std::vector<TrueSlot>& slots);
@@ -141,48 +130,6 @@ class SlotScore : public SampleScore {
   std::array<Count, 4> markings_;
   std::ofstream trials_;
 };
-
-std::vector<TrueSlot> SlotScore::trueSlots(const SemanticSampler& sampler,
-                                           const SemanticSample& sample,
-                                           const BevLabels& truth) const {
-  const sim::Garage& garage = sampler.simulation().garage();
-  const SO3 tilt = levelFrom(sample.true_attitude).rotation();
-  const SE3 T_vehicle_world = sample.T_world_vehicle.inverse();
-  const BevGeometry& g = truth.geometry;
-  const LabelProbe probe(truth);
-  std::vector<TrueSlot> slots;
-  for (const sim::Slot& s : garage.slots) {
-    TrueSlot one;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const Vector2d& c = s.corners[i];
-      const Eigen::Vector3d p_vehicle =
-          T_vehicle_world * Eigen::Vector3d(c.x(), c.y(), garage.floorHeight(c));
-      one.slot.corners[i] = (tilt * p_vehicle).head<2>();
-    }
-    const auto& c = one.slot.corners;
-    if ((0.5 * (c[0] + c[1]) - g.center).norm() > 1.5 * kSlotReach) continue;
-    one.slot.shape = static_cast<SlotShape>(s.type);
-    one.slot.marking = static_cast<SlotMarking>(s.marking);
-    one.occupied = s.occupied;
-    constexpr double kSide = 0.7;  // m of each side line that must be in sight
-    constexpr double kHidden = 0.1;
-    const auto clear = [&](const Vector2d& from, const Vector2d& to) {
-      return probe.along(from, to).hidden <= kHidden;
-    };
-    const Vector2d left = kSide * (c[3] - c[0]).normalized();
-    const Vector2d right = kSide * (c[2] - c[1]).normalized();
-    const auto worn = [&](const Vector2d& from, const Vector2d& to) {
-      return probe.along(from, to, 0.05).paint < 0.5;
-    };
-    one.counts = (c[0] - g.center).norm() < kSlotReach && (c[1] - g.center).norm() < kSlotReach &&
-                 clear(c[0], c[1]) && clear(c[0], c[0] + left) && clear(c[1], c[1] + right) &&
-                 // What lies in front of the corner tells that the line ends there.
-                 clear(c[0], c[0] - 0.3 * left) && clear(c[1], c[1] - 0.3 * right) &&
-                 !worn(c[0], c[0] + left) && !worn(c[1], c[1] + right);
-    slots.push_back(one);
-  }
-  return slots;
-}
 
 void SlotScore::measure(const BevGeometry& geometry, const SlotObservation& found,
                         const TrueSlot& truth) {

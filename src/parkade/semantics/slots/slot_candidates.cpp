@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kSquare = 0.1392;      // cosine of 82 degrees: what is nearer to 90 is square
-constexpr double kMostSlant = 0.82;     // cosine of 35 degrees
+constexpr double kMostSlant = 0.89;     // cosine of 27 degrees
 constexpr double kAlongFront = 0.1745;  // rad, 10 degrees
 constexpr double kSideBySide = 0.1047;  // rad, 6 degrees
 constexpr double kMostOff = 0.45;       // rad, however short
@@ -141,29 +141,31 @@ class MarkPairing {
     const double least = parallel ? options_.min_parallel_depth_m : options_.min_depth_m;
     const double most = parallel ? options_.max_parallel_depth_m : options_.max_depth_m;
     std::array<double, 2> ends{};
+    std::array<double, 2> early{};
     int seen = 0;
-    int shorter = 0;
     for (int k = 0; k < 2; ++k) {
       const SlotMark& front = k == 0 ? *c.left : *c.right;
       double best = 0.0;
-      bool ended = false;
+      double& ended = early[static_cast<std::size_t>(k)];
       for (const SlotMark& mark : marks_) {
         if (mark.side != front.side || mark.inward.dot(front.inward) > -kParallelSides) continue;
         const double depth = (mark.p - front.p).dot(c.inward);
         if (depth >= least && depth <= most && (best == 0.0 || depth < best)) best = depth;
-        if (depth > 0.0 && depth < least && endsFor(front, depth, least)) ended = true;
+        if (depth > ended && depth < least && endsFor(front, depth, least)) ended = depth;
       }
       ends[static_cast<std::size_t>(k)] = best;
       if (best > 0.0) ++seen;
-      if (ended) ++shorter;
+      if (ended > 0.0) ++c.ends_short;
     }
     if (seen == 2) {
       constexpr double kSame = 0.25;
       if (std::abs(ends[0] - ends[1]) < kSame) c.depth = 0.5 * (ends[0] + ends[1]);
     }
     if (parallel && std::min(c.left->visible, c.right->visible) > most + 0.3) return false;
-    // One alone may be worn or in the dark.
-    return shorter < 2 || c.depth > 0.0;
+    // One alone may be worn or in the dark, and two where they end apart.
+    constexpr double kAlike = 0.4;
+    const bool both = c.ends_short == 2 && std::abs(early[0] - early[1]) < kAlike;
+    return !both || c.depth > 0.0;
   }
 
   // Whether a side line goes on nowhere between a place on it and a slot's least depth: a line that

@@ -27,6 +27,7 @@ struct SlotCandidate {
   double depth = 0.0;  ///< m along inward; 0: not seen
   int turned_out = 0;  ///< sides whose meeting line runs only away from the other side
   bool mark_between = false;
+  int ends_short = 0;    ///< sides that are seen to end before a slot's least depth
   SlotClues clues = {};  ///< slot_clues.hpp
   double doubt = 0.0;    ///< what other candidates say against it
   double score = 0.0;    ///< log-odds
@@ -54,8 +55,8 @@ inline Eigen::Vector2d pointIn(const std::array<Eigen::Vector2d, 4>& corners, do
 
 /// All pairs of marks that have a slot's size and contradict none: no side as plain as theirs
 /// between them (along the aisle: none at all), lines that meet them along the entrance within a
-/// tolerance by their length, sides that do not both end too early; faint lines make slots of their
-/// row's width. Clues and score are not set yet (slot_ranking.hpp).
+/// tolerance by their length, sides that do not both end alike too early; faint lines make slots of
+/// their row's width. Clues and score are not set yet (slot_ranking.hpp).
 std::vector<SlotCandidate> pairSlotMarks(const std::vector<SlotMark>& marks,
                                          const LabelProbe& probe, const SlotOptions& options);
 

@@ -78,7 +78,8 @@ class SlotClueFinder {
             0.5 * c.turned_out,
             flag(c.mark_between),
             0.5 * (flag(c.left->is_bar) + flag(c.right->is_bar)),
-            most(3.0 * largestAngle(c))};
+            most(3.0 * largestAngle(c)),
+            0.5 * c.ends_short};
   }
 
  private:

@@ -46,8 +46,9 @@ TEST(SlotClues, OfAPlainRow) {
   EXPECT_GT(clue(clues, "way_floor"), 0.9);
   EXPECT_GT(clue(clues, "neighbours"), 0.4);
   EXPECT_LT(clue(clues, "skew"), 0.05);
-  for (const char* name : {"way_paint", "paint_across", "away", "lane_beyond", "stop_in_front",
-                           "slanted", "parallel", "pillar", "faint", "turned_out", "bars"}) {
+  for (const char* name :
+       {"way_paint", "paint_across", "away", "lane_beyond", "stop_in_front", "slanted", "parallel",
+        "pillar", "faint", "turned_out", "bars", "ends_short"}) {
     EXPECT_EQ(clue(clues, name), 0.0) << name;
   }
   EXPECT_GT(slotLogOdds(clues), 2.0);
@@ -64,6 +65,26 @@ TEST(SlotClues, WheelStopsAtTheEntrance) {
             SemanticClass::kWheelStop, 150);
   EXPECT_GT(clue(cluesOf(stop, row), "stop_in_front"), 0.5);
   EXPECT_LT(slotLogOdds(cluesOf(stop, row)), before - 3.0);
+}
+
+// The gap between two slots along the aisle is as wide as a slot into it, but its lines are short.
+TEST(SlotClues, SidesMayEndTooEarly) {
+  Row gap;
+  gap.depth = 2.3;
+  gap.count = 1;
+  gap.marking = SlotMarking::kOpen;
+  PaintedFloor floor;
+  gap.paint(floor);
+  EXPECT_TRUE(slotsOf(floor).empty());
+  const double x = gap.front(1).x();
+  PaintedFloor hidden = floor;  // a pillar before the end of one of them
+  hidden.polygon({{x + 0.4, -9.0}, {x + 0.4, -3.4}, {x - 0.4, -3.4}, {x - 0.4, -9.0}},
+                 SemanticClass::kPillar, 60);
+  EXPECT_EQ(clue(cluesOf(hidden, gap), "ends_short"), 0.5);
+  PaintedFloor apart;  // one has worn off before the other
+  apart.line(gap.front(0), gap.rear(0), kLine);
+  apart.line(gap.front(1), gap.front(1) - Vector2d(0.0, 1.2), kLine);
+  EXPECT_EQ(clue(cluesOf(apart, gap), "ends_short"), 1.0);
 }
 
 TEST(SlotClues, SlotsAlongTheAisleAreParallel) {

@@ -76,6 +76,21 @@ TEST(SlotExtraction, FindsSlantedSlots) {
   }
 }
 
+TEST(SlotExtraction, FindsSlotsAt30DegreesToTheAisle) {
+  Row row;
+  row.x0 = 8.5;
+  row.width = 5.0;  // 2.5 m between the sides
+  row.depth = 2.5;
+  row.lean = 4.33;
+  for (const SlotMarking marking : {SlotMarking::kT, SlotMarking::kOpen}) {
+    SCOPED_TRACE(static_cast<int>(marking));
+    row.marking = marking;
+    PaintedFloor floor;
+    row.paint(floor);
+    expectRow(row, slotsOf(floor), SlotShape::kSlanted, 0.06);
+  }
+}
+
 TEST(SlotExtraction, TellsFreeFromOccupied) {
   Row row;
   row.count = 3;

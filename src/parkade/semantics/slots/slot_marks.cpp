@@ -16,7 +16,7 @@ constexpr double kMeetFar = 0.8;  // m: the same in paint, at lines that pass an
 constexpr double kLeastMet = 0.25;   // m of side line to see, where another line meets it
 constexpr double kLeastOpen = 0.35;  // the same without
 constexpr double kLongestBar = 0.9;  // m
-constexpr double kSteepest = 0.5;    // sine of the least angle between lines that meet
+constexpr double kSteepest = 0.42;   // sine of the least angle between lines that meet
 constexpr double kFaint = -1.5;      // log-odds of a worn end of a line
 constexpr double kBeyond = 0.9;      // m in front of an entrance without its side going on
 

@@ -60,9 +60,10 @@ class SlotRanking {
 
   // Beside a pillar the gap between two slots is easily taken into one of them: the line between is
   // hidden or worn. Where others are narrower, a wide one is doubtful, less so if the place of that
-  // line is seen to be bare, and not if its front is painted from corner to corner and no further:
-  // nothing was taken into it then. What borders on a likelier perpendicular slot is hardly a
-  // parallel one, and the entrances of slots that share a line lie in one line.
+  // line is seen to be bare, and not if its front is painted from corner to corner and no further,
+  // or up to a neighbour's at one of them: nothing was taken into it then. What borders on a
+  // likelier perpendicular slot is hardly a parallel one, and the entrances of slots that share a
+  // line lie in one line.
   [[nodiscard]] double doubtBy(const SlotCandidate& c, const SlotCandidate& other) const {
     constexpr double kSure = 1.0;    // log-odds of what speaks against others
     constexpr double kWider = 0.35;  // m
@@ -75,7 +76,7 @@ class SlotRanking {
     double doubt = 0.0;
     if (share && other.score > c.score && !inLine(c, other)) doubt += 2.0;
     const double narrower = other.width();
-    if (c.shape != SlotShape::kParallel && c.width() - narrower > kWider && !frontEndsAtBoth(c)) {
+    if (c.shape != SlotShape::kParallel && c.width() - narrower > kWider && !frontEnds(c)) {
       doubt += isBareAt(c, narrower) ? kBare : 2.0;
     }
     return doubt;
@@ -99,8 +100,9 @@ class SlotRanking {
     return a.dot(other.front().normalized()) > kStraight;
   }
 
-  // Whether the front is painted all along and ends at both corners.
-  [[nodiscard]] bool frontEndsAtBoth(const SlotCandidate& c) const {
+  // Whether the front is painted all along and ends at both corners, or at one of them and at the
+  // other a neighbour begins.
+  [[nodiscard]] bool frontEnds(const SlotCandidate& c) const {
     constexpr double kPainted = 0.8;
     constexpr double kBare = 0.9;
     constexpr double kPast = 0.15;  // m from a corner
@@ -108,9 +110,17 @@ class SlotRanking {
     const Vector2d u = c.front().normalized();
     const Vector2d left = c.left->p;
     const Vector2d right = c.right->p;
-    return probe_.along(left + kPast * u, right - kPast * u).paint > kPainted &&
-           probe_.along(left - kPast * u, left - kFar * u).floor > kBare &&
-           probe_.along(right + kPast * u, right + kFar * u).floor > kBare;
+    if (probe_.along(left + kPast * u, right - kPast * u).paint <= kPainted) return false;
+    const bool ends_left = probe_.along(left - kPast * u, left - kFar * u).floor > kBare;
+    const bool ends_right = probe_.along(right + kPast * u, right + kFar * u).floor > kBare;
+    const auto neighbour = [&](const auto& shares) {
+      return std::any_of(candidates_.begin(), candidates_.end(), [&](const SlotCandidate& other) {
+        return shares(other) && other.score > 0.0 && other.inward.dot(c.inward) > kParallelSides;
+      });
+    };
+    return (ends_left || neighbour([&](const auto& other) { return other.right == c.left; })) &&
+           (ends_right || neighbour([&](const auto& other) { return other.left == c.right; })) &&
+           (ends_left || ends_right);
   }
 
   // Whether both places of a side line that would leave a slot of this width hold nothing but

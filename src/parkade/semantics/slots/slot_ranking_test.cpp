@@ -65,6 +65,20 @@ TEST(SlotRanking, AWideSlotIsOneWhereItsFrontEnds) {
   }
 }
 
+// As those for wheelchairs do: where the front of one ends the other's begins.
+TEST(SlotRanking, WideSlotsComeInPairs) {
+  Row narrow;
+  narrow.x0 = 7.2;
+  Row wide = narrow;
+  wide.x0 = narrow.front(narrow.count).x() - 0.8;
+  wide.width = 3.6;
+  PaintedFloor floor;
+  narrow.paint(floor);
+  wide.paint(floor);
+  const std::vector<SlotObservation> slots = slotsOf(floor);
+  for (int i = 0; i < 2; ++i) EXPECT_NE(slotAt(slots, wide.front(i)), nullptr) << i;
+}
+
 TEST(SlotRanking, RearsAreNoEntrances) {
   Row row;
   row.depth = 4.8;

@@ -41,8 +41,8 @@ TEST_F(FisheyePatch, SamplesWhereItIsTold) {
         ramp.at<float>(v, u) = static_cast<float>(axis == 0 ? u : v);
       }
     }
-    const cv::Mat patch = sampleTextPatch(
-        ramp, kTallPatchHeight, 2, [this](double u, double v) { return pixelAt(u, v); });
+    const cv::Mat patch = sampleTextPatch(ramp, kTallPatchHeight, 2,
+                                          [this](double u, double v) { return pixelAt(u, v); });
     ASSERT_EQ(patch.size(), cv::Size(kZonePatchWidth, kTallPatchHeight));
     double worst = 0.0;
     for (int v = 0; v < patch.rows; ++v) {
