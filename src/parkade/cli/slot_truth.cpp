@@ -10,9 +10,8 @@ namespace parkade::cli {
 
 using Eigen::Vector2d;
 
-std::vector<TrueSlot> trueSlots(const SemanticSampler& sampler,
-                                           const SemanticSample& sample,
-                                           const BevLabels& truth, double reach) {
+std::vector<TrueSlot> trueSlots(const SemanticSampler& sampler, const SemanticSample& sample,
+                                const BevLabels& truth, double reach) {
   const sim::Garage& garage = sampler.simulation().garage();
   const SO3 tilt = levelFrom(sample.true_attitude).rotation();
   const SE3 T_vehicle_world = sample.T_world_vehicle.inverse();

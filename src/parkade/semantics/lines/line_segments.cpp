@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "parkade/geometry/planar.hpp"
 #include "parkade/semantics/standing/tilt_error.hpp"
 
 namespace parkade {
@@ -69,7 +70,23 @@ void Piece::fit() {
   }
 }
 
-// Splits at the farthest point until every piece is straight.
+// Of the points between the first and the last, the farthest from the straight line between those:
+// where a chain bends (Douglas and Peucker 1973). Far from a fit lies a bent chain's end.
+std::size_t bendOf(const MeasuredLine& line, std::size_t first, std::size_t last) {
+  const Vector2d begin = line.points[first].p_level;
+  const Vector2d chord = line.points[last - 1].p_level - begin;
+  std::size_t bend = first + (last - first) / 2;
+  double farthest = 0.0;
+  for (std::size_t i = first + 1; i + 1 < last; ++i) {
+    const double off = std::abs(cross(chord, line.points[i].p_level - begin));
+    if (off <= farthest) continue;
+    farthest = off;
+    bend = i;
+  }
+  return bend;
+}
+
+// Splits until every piece is straight.
 void split(const MeasuredLine& line, std::size_t first, std::size_t last, double max_deviation,
            std::vector<Piece>& out) {
   constexpr std::size_t kLeast = 3;
@@ -81,21 +98,17 @@ void split(const MeasuredLine& line, std::size_t first, std::size_t last, double
     piece.samples.push_back({line.points[i].p_level, line.sigmas[i]});
   }
   piece.fit();
-  std::size_t worst = first;
-  double worst_off = 0.0;
-  // Ends cannot be split off: of the others the farthest.
+  double off = 0.0;  // of the ends, which cannot be split off, nobody asks
   for (std::size_t i = first + 1; i + 1 < last; ++i) {
-    const double off = std::abs(piece.normal().dot(line.points[i].p_level - piece.middle));
-    if (off <= worst_off) continue;
-    worst_off = off;
-    worst = i;
+    off = std::max(off, std::abs(piece.normal().dot(line.points[i].p_level - piece.middle)));
   }
-  if (worst_off <= max_deviation) {
+  if (off <= max_deviation) {
     out.push_back(std::move(piece));
     return;
   }
-  split(line, first, worst + 1, max_deviation, out);
-  split(line, worst, last, max_deviation, out);
+  const std::size_t bend = bendOf(line, first, last);
+  split(line, first, bend + 1, max_deviation, out);
+  split(line, bend, last, max_deviation, out);
 }
 
 bool joins(const Piece& a, const Piece& b, double max_gap) {

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 
+#include "parkade/core/units.hpp"
 #include "parkade/semantics/slots/slot_test_support.hpp"
 
 namespace parkade {
@@ -76,18 +78,20 @@ TEST(SlotExtraction, FindsSlantedSlots) {
   }
 }
 
-TEST(SlotExtraction, FindsSlotsAt30DegreesToTheAisle) {
-  Row row;
-  row.x0 = 8.5;
-  row.width = 5.0;  // 2.5 m between the sides
-  row.depth = 2.5;
-  row.lean = 4.33;
-  for (const SlotMarking marking : {SlotMarking::kT, SlotMarking::kOpen}) {
-    SCOPED_TRACE(static_cast<int>(marking));
-    row.marking = marking;
-    PaintedFloor floor;
-    row.paint(floor);
-    expectRow(row, slotsOf(floor), SlotShape::kSlanted, 0.06);
+TEST(SlotExtraction, FindsSlotsAtAnyAngleToTheAisle) {
+  for (const double angle : {30.0, 40.0, 50.0, 70.0}) {
+    for (const SlotMarking marking : {SlotMarking::kClosed, SlotMarking::kT, SlotMarking::kOpen}) {
+      SCOPED_TRACE(testing::Message() << angle << " degrees, " << static_cast<int>(marking));
+      Row row;
+      row.x0 = 8.5;
+      row.width = 2.5 / std::sin(angle * kDegree);
+      row.depth = 5.0 * std::sin(angle * kDegree);
+      row.lean = 5.0 * std::cos(angle * kDegree);
+      row.marking = marking;
+      PaintedFloor floor;
+      row.paint(floor);
+      expectRow(row, slotsOf(floor), SlotShape::kSlanted, 0.035 / std::sin(angle * kDegree));
+    }
   }
 }
 
