@@ -8,6 +8,7 @@
 
 #include "parkade/mapping/frame_evidence.hpp"
 #include "parkade/mapping/map_check.hpp"
+#include "parkade/mapping/objects/marker_grid.hpp"
 
 namespace parkade {
 namespace {
@@ -217,7 +218,8 @@ bool ObjectRegistry::isPhantom(const Track& marker) const {
   });
 }
 
-std::vector<MapObject> ObjectRegistry::objects() const {
+// Those that exist, none on another; ordered by id.
+std::vector<const ObjectRegistry::Track*> ObjectRegistry::told() const {
   std::vector<const Track*> order;
   for (const Track& track : tracks_) {
     if (exists(track)) order.push_back(&track);
@@ -248,15 +250,38 @@ std::vector<MapObject> ObjectRegistry::objects() const {
   }
   std::stable_sort(told.begin(), told.end(),
                    [](const Track* a, const Track* b) { return a->id < b->id; });
+  return told;
+}
+
+// Their texts; what is written on zone markers, all of them together tell.
+std::vector<std::string> ObjectRegistry::textsOf(const std::vector<const Track*>& told) {
   TextFormat format;
   for (const Track* track : told) {
     if (track->semantic_class != SemanticClass::kZoneMarker) continue;
     const std::string text = track->texts.best();
     if (!text.empty()) format.add(text);
   }
+  std::vector<std::string> texts;
+  std::vector<NamedMarker> markers;
+  for (const Track* track : told) {
+    const bool marker = track->semantic_class == SemanticClass::kZoneMarker;
+    texts.push_back(marker ? track->texts.best(format) : track->texts.best());
+    if (marker) markers.push_back({track->position.head<2>(), texts.back()});
+  }
+  nameByGrid(markers);
+  auto named = markers.begin();
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    if (told[i]->semantic_class == SemanticClass::kZoneMarker) texts[i] = (named++)->text;
+  }
+  return texts;
+}
+
+std::vector<MapObject> ObjectRegistry::objects() const {
+  const std::vector<const Track*> tracks = told();
+  const std::vector<std::string> texts = textsOf(tracks);
   std::vector<MapObject> result;
-  for (const Track* one : told) {
-    const Track& track = *one;
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    const Track& track = *tracks[i];
     MapObject object;
     object.id = track.id;
     object.semantic_class = track.semantic_class;
@@ -266,8 +291,7 @@ std::vector<MapObject> ObjectRegistry::objects() const {
     // Looks share the errors of calibration and pose, which many of them do not average out.
     object.position_sigma = std::hypot(std::sqrt(std::max(0.0, track.covariance.trace() / 3.0)),
                                        options_.position_floor_m);
-    object.text = track.semantic_class == SemanticClass::kZoneMarker ? track.texts.best(format)
-                                                                     : track.texts.best();
+    object.text = texts[i];
     object.outline = track.outline;
     object.observations = track.observations;
     result.push_back(std::move(object));

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "parkade/core/options.hpp"
@@ -104,7 +105,8 @@ class ObjectRegistry {
   void raise(double dz);
   /// Those that exist by what plain sight shows, none on another of its class; ordered by id.
   /// Without labels, and where there is no outline: those observed often enough. Sigmas hold the
-  /// errors that all looks share.
+  /// errors that all looks share. Texts of zone markers are made alike (text_format.hpp) and follow
+  /// the grid that most of them stand in (marker_grid.hpp).
   [[nodiscard]] std::vector<MapObject> objects() const;
 
  private:
@@ -137,6 +139,8 @@ class ObjectRegistry {
   [[nodiscard]] bool isPhantom(const Track& marker) const;
   [[nodiscard]] bool compatible(const Track& a, SemanticClass c, const Eigen::Vector3d& p,
                                 double heading, bool has_heading) const;
+  [[nodiscard]] std::vector<const Track*> told() const;
+  [[nodiscard]] static std::vector<std::string> textsOf(const std::vector<const Track*>& told);
   static void fuse(Track& track, const Eigen::Vector3d& p, const Eigen::Matrix3d& covariance);
   void mergeDuplicates();
 
