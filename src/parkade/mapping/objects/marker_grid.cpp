@@ -172,9 +172,10 @@ std::vector<Marker> alike(const std::vector<NamedMarker>& named, GridName& usual
   int most = 0;
   for (const Marker& one : markers) {
     if (!one.name) continue;
-    const auto count = static_cast<int>(std::count_if(
-        markers.begin(), markers.end(),
-        [&](const Marker& other) { return other.name && other.name->isLike(*one.name); }));
+    const auto count =
+        static_cast<int>(std::count_if(markers.begin(), markers.end(), [&](const Marker& other) {
+          return other.name && other.name->isLike(*one.name);
+        }));
     if (count <= most) continue;
     most = count;
     usual = *one.name;
