@@ -8,7 +8,6 @@
 #include <chrono>
 #include <cmath>
 #include <deque>
-#include <future>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -29,14 +28,6 @@ using Clock = std::chrono::steady_clock;
 double since(Clock::time_point begin) {
   return millisecondsBetween(begin, Clock::now());
 }
-
-// Waits at the end of its scope.
-struct WaitFor {
-  std::future<void>& done;
-  ~WaitFor() {
-    if (done.valid()) done.wait();
-  }
-};
 
 // About the vehicle's z: of all cameras, the mean of what each has turned.
 double commonTurn(const std::vector<SE3>& before, const std::vector<SE3>& after) {
@@ -251,17 +242,17 @@ Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames, ThreadPool&
   Impl& m = *impl_;
   const Impl::View view = m.nextView();
   // Markers need nothing of the stitched picture, and take about as long.
+  Result<SemanticFrame> frame = SemanticFrame();
   Result<std::vector<ObjectObservation>> markers = std::vector<ObjectObservation>();
-  std::future<void> markers_done = beside.submit([&] {
-    if (m.zone_markers == nullptr) return;
+  beside.parallelFor(m.zone_markers == nullptr ? 1 : 2, [&](int part) {
+    if (part == 0) {
+      frame = m.lookDown(frames, view);
+      return;
+    }
     const Clock::time_point begin = Clock::now();
     markers = m.zone_markers->look(frames, view.now, view.floor.attitude);
     m.zone_clock.add(since(begin));
   });
-  // They use what lies here, whatever happens.
-  const WaitFor wait{markers_done};
-  Result<SemanticFrame> frame = m.lookDown(frames, view);
-  markers_done.get();
   if (!frame) return frame.error();
   if (!markers) return markers.error();
   for (ObjectObservation& marker : *markers) frame->objects.push_back(std::move(marker));

@@ -83,8 +83,8 @@ class SemanticFrontEnd {
   /// Where the cameras sit by what is known now, one a camera: from the next look() on. Small moves
   /// are left until they add up.
   void placeCameras(const std::vector<SE3>& T_vehicle_cam);
-  /// The features of the first frame set that was taken. The cameras' own pictures are looked at in
-  /// `beside`, the stitched one in the caller.
+  /// The features of the first frame set that was taken. The stitched picture and the cameras'
+  /// own are looked at beside each other, by the caller and `beside`.
   Result<SemanticFrame> look(const FrameSet& frames, ThreadPool& beside);
 
   /// The stitched picture that the last look() saw.

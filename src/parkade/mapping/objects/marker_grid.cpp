@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "parkade/core/units.hpp"
+#include "parkade/geometry/planar.hpp"
 
 namespace parkade {
 namespace {
@@ -89,16 +90,15 @@ std::optional<double> directionOf(const std::vector<Marker>& markers, Part share
       all += 1.0;
     }
   }
-  const auto around = [&](std::size_t bin, const auto& values) {
-    return (values[(bin + kBins - 1) % kBins] + values[bin] + values[(bin + 1) % kBins]).eval();
-  };
   double most = 0.0;
   Vector2d sum = Vector2d::Zero();
   for (std::size_t bin = 0; bin < kBins; ++bin) {
-    const double count = pairs[(bin + kBins - 1) % kBins] + pairs[bin] + pairs[(bin + 1) % kBins];
+    const std::size_t before = (bin + kBins - 1) % kBins;
+    const std::size_t after = (bin + 1) % kBins;
+    const double count = pairs[before] + pairs[bin] + pairs[after];
     if (count <= most) continue;
     most = count;
-    sum = around(bin, sums);
+    sum = sums[before] + sums[bin] + sums[after];
   }
   if (most < kLeast || most < kShare * all) return std::nullopt;
   const double twice = std::atan2(sum.y(), sum.x());
@@ -147,7 +147,7 @@ class NameGrid {
       if (j == i || !markers_[j].name) continue;
       const Vector2d d = markers_[j].p - markers_[i].p;
       const double distance = std::abs(d.dot(along));
-      if (std::abs(d.x() * along.y() - d.y() * along.x()) > kAside || distance > kFar) continue;
+      if (std::abs(cross(d, along)) > kAside || distance > kFar) continue;
       others.emplace_back(distance, &((*markers_[j].name).*part));
     }
     std::stable_sort(others.begin(), others.end(),
