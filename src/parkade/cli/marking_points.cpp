@@ -165,6 +165,7 @@ class Scorer {
     std::vector<Vector2d> corners;   // px, of the slots' entrances
     std::vector<Vector2d> meetings;  // px, of slot lines
     std::vector<Vector2d> all;       // px, both and open ends
+    cv::Mat labels;                  // at the network's scale
   };
 
   Result<Found> find(const BevImage& whole, const BevImage& grey) {
@@ -179,6 +180,7 @@ class Scorer {
       addDistinct(whole.geometry.toPixel(ground), options_.radius_px, points);
     };
     Found found;
+    found.labels = labels->labels;
     found.slots = extractSlots(bev, *labels, lines.segments, views, {kAttitudeSigma, 0.01});
     for (const SlotObservation& slot : found.slots) {
       for (std::size_t k = 0; k < 2; ++k) addTo(found.corners, slot.corners[k]);
@@ -193,14 +195,12 @@ class Scorer {
     return found;
   }
 
-  Status draw(const BevImage& whole, const Marked& marked, const Found& found) {
-    const Result<BevLabels> labels = network_.segment(whole);
-    if (!labels) return labels.error();
+  [[nodiscard]] Status draw(const BevImage& whole, const Marked& marked, const Found& found) const {
     std::vector<LineSegment> strokes;
     addStrokes(marked.points, true, whole.geometry, strokes);
     addStrokes(found.meetings, false, whole.geometry, strokes);
-    const cv::Mat picture = drawSlots(drawLabels(whole.image, labels->labels, 0.5), whole.geometry,
-                                      found.slots, strokes);
+    const cv::Mat picture =
+        drawSlots(drawLabels(whole.image, found.labels, 0.5), whole.geometry, found.slots, strokes);
     return writeImage(joinPath(options_.out, "pictures/" + marked.name), picture,
                       {.png = false, .jpeg_quality = 90});
   }

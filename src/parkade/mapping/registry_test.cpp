@@ -402,22 +402,35 @@ TEST(ObjectRegistry, OfTwoMarkersThatBearOneTextTheOneMeasuredMoreIsTold) {
   marker.position = {20.0, 3.0, 1.6};
   marker.covariance = 0.01 * Eigen::Matrix3d::Identity();
   marker.confidence = 0.95;
-  const auto told = [&](const std::string& other, double apart) {
+  const auto told = [&](const std::string& other, double apart, bool on_pillar) {
     ObjectRegistry registry({});
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 4; ++k) {
       ObjectObservation misplaced = marker;
       misplaced.text = other;
       misplaced.position.x() += apart;
       marker.text = "B1";
-      registry.update(k == 0 ? std::vector{misplaced, marker} : std::vector{marker}, SE2(), 0.0, 0);
+      std::vector<ObjectObservation> seen = {marker};
+      if (k == 0) seen.push_back(misplaced);
+      ObjectObservation pillar = misplaced;
+      pillar.semantic_class = SemanticClass::kPillar;
+      pillar.position.z() = 0.0;
+      pillar.text.clear();
+      if (on_pillar) seen.push_back(pillar);
+      registry.update(seen, SE2(), 0.0, k);
     }
-    return registry.objects();
+    std::vector<MapObject> markers = registry.objects();
+    std::erase_if(markers, [](const MapObject& object) {
+      return object.semantic_class != SemanticClass::kZoneMarker;
+    });
+    return markers;
   };
-  const std::vector<MapObject> one = told("B1", 1.4);
+  const std::vector<MapObject> one = told("B1", 1.4, false);
   ASSERT_EQ(one.size(), 1U);
   EXPECT_NEAR(one[0].position.x(), 20.0, 1e-9);
-  EXPECT_EQ(told("B2", 1.4).size(), 2U);
-  EXPECT_EQ(told("B1", 2.5).size(), 2U);  // another pillar
+  EXPECT_EQ(told("B2", 1.4, false).size(), 2U);
+  EXPECT_EQ(told("B1", 2.5, true).size(), 2U);   // another pillar
+  EXPECT_EQ(told("B1", 4.0, false).size(), 1U);  // bearings to different ones
+  EXPECT_EQ(told("B2", 4.0, false).size(), 2U);
 }
 
 // A floor with a 1 m x 0.5 m stop line at (4, 0), labelled for a part of its width.

@@ -206,12 +206,22 @@ bool ObjectRegistry::exists(const Track& track) const {
 }
 
 // Who passes a marker sees it from many places. One that was measured once all the same, where no
-// pillar is, was put together from bearings to different ones.
+// pillar is, was put together from bearings to different ones; so was one further away that bears
+// the name of another, well known.
 bool ObjectRegistry::isPhantom(const Track& marker) const {
   constexpr double kPillarNear = 1.5;  // m
+  constexpr int kWellKnown = 3;        // observations
   if (marker.observations > 1) return false;
   const Eigen::Vector2d p = marker.position.head<2>();
-  if (!way_.passed(p, options_.marker_reach_m)) return false;
+  const std::string name = marker.texts.best();
+  const auto namesake = [&](const Track& track) {
+    return track.semantic_class == SemanticClass::kZoneMarker && track.observations >= kWellKnown &&
+           track.texts.best() == name;
+  };
+  if (!way_.passed(p, options_.marker_reach_m) &&
+      (name.empty() || std::none_of(tracks_.begin(), tracks_.end(), namesake))) {
+    return false;
+  }
   return std::none_of(tracks_.begin(), tracks_.end(), [&](const Track& track) {
     return track.semantic_class == SemanticClass::kPillar &&
            (track.position.head<2>() - p).norm() < kPillarNear && exists(track);
