@@ -311,6 +311,25 @@ class LossTest(unittest.TestCase):
         self.assertEqual(changed.shape, moved.shape)
         self.assertTrue(bool(((changed >= 0) & (changed <= 255)).all()))
 
+    def test_what_real_places_look_like(self):
+        from batch_augment import Draw, cameras, plates, shade
+
+        torch.manual_seed(5)
+        images = torch.full((16, 3, 96, 96), 120.0)
+        labels = torch.zeros(16, 96, 96).byte()
+        labels[:, :, 48:] = 1
+        draw = Draw(16, "cpu")
+        covered = plates(draw, images, labels, 1)
+        self.assertTrue(bool((covered[:, :, :, :48] == 120.0).all()))  # no floor
+        self.assertGreater(int((covered[:, :, :, 48:] != 120.0).sum()), 100)
+        dark = shade(draw, images)
+        self.assertLess(float(dark.max()), 130.0)
+        self.assertGreater(float(dark.min()), 20.0)
+        self.assertGreater(float((dark.amax((1, 2, 3)) - dark.amin((1, 2, 3))).median()), 10.0)
+        apart = cameras(draw, images)
+        self.assertTrue(bool(torch.isfinite(apart).all()))
+        self.assertGreater(float((apart[:, :, 0, 48] - apart[:, :, 95, 48]).abs().median()), 5.0)
+
     def test_training_on_a_device_takes_in_what_is_drawn(self):
         from PIL import Image
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Parkade authors
 # SPDX-License-Identifier: Apache-2.0
-"""What augment.py does to one picture, for a batch of them on any device. Pictures are float RGB,
+"""What augment.py does to one picture, and more, for a batch of them on any device. Pictures are float RGB,
 0 to 255, N x 3 x H x W; every picture draws its own numbers."""
 import math
 
@@ -78,6 +78,55 @@ def shadow(draw, size):
     band = torch.sigmoid(-(a - draw.uniform(15, 150)) / soft)
     inside = torch.where(draw.chance(0.5), inside * band, inside)
     return 1.0 + inside * (draw.uniform(0.35, 0.9) - 1.0)
+
+
+def cameras(draw, images):
+    """As cameras that expose and balance colours each for itself, stitched with seams: pictures before, behind and
+    beside the car part along rays from its corners."""
+    u, v = coordinates(images.shape[2:], draw.device)
+    x = u - u.mean() + draw.uniform(-40, 40)
+    y = v - v.mean() + draw.uniform(-40, 40)
+    beside = (x.abs() - draw.uniform(15, 35)) * draw.uniform(0.4, 1.6)
+    soft = draw.uniform(0.2, 8)
+    ends = torch.sigmoid((y.abs() - draw.uniform(40, 75) - beside.clamp(min=0)) / soft)
+    ahead, right = torch.sigmoid(-y / soft), torch.sigmoid(x / soft)
+    parts = [ends * ahead, ends * (1 - ahead), (1 - ends) * right, (1 - ends) * (1 - right)]
+    strength = draw.uniform(0.1, 0.4)
+    return sum(part * (images * torch.exp(strength * draw.normal(0, 1) + draw.normal(0, 0.05, 3)) +
+                       20 * strength * draw.normal(0, 1)) for part in parts)
+
+
+def shade(draw, images):
+    """Sunlight through trees and past cars: shadows of any outline, bluer than what lies in the sun, and the own car's."""
+    size = images.shape[2:]
+    field = smooth_field(len(images), size, int(torch.randint(1, 16, (1,))), draw.device)
+    inside = torch.sigmoid((field - draw.normal(0.3, 0.6)) / draw.uniform(0.01, 0.3))
+    a, b = rotated(draw, size, math.pi)
+    a = (a - a.mean((2, 3), keepdim=True) + draw.uniform(-60, 60)).abs() - draw.uniform(20, 70)
+    b = (b - b.mean((2, 3), keepdim=True) + draw.uniform(-60, 60)).abs() - draw.uniform(15, 60)
+    box = torch.sigmoid(-torch.maximum(a, b) / draw.uniform(0.5, 4))
+    inside = torch.where(draw.chance(0.3), box, inside)
+    dark = draw.uniform(0.25, 0.85) * torch.exp(draw.normal(0, 0.04, 3))
+    return images * (1.0 + inside * (dark - 1.0))
+
+
+def plates(draw, images, labels, floor):
+    """Covers, drains and slabs that lie in the floor, framed and barred or not."""
+    size = images.shape[2:]
+    bare = (labels == floor)[:, None]
+    for k in range(3):
+        a, b = rotated(draw, size, math.pi)
+        a = a - a.mean((2, 3), keepdim=True) + draw.uniform(-170, 170)
+        b = b - b.mean((2, 3), keepdim=True) + draw.uniform(-170, 170)
+        half = draw.uniform(5, 28)
+        edge = torch.maximum(a.abs() - half, b.abs() - half * draw.uniform(0.5, 1.6))
+        frame = (edge.abs() < draw.uniform(0.4, 1.4)) & draw.chance(0.7)
+        bar = draw.uniform(4, 9)
+        barred = ((a % bar < 1.3) | ((b % bar < 1.3) & draw.chance(0.6))) & (edge < 0) & draw.chance(0.4)
+        inside = (edge < 0) & bare & draw.chance(1.0 - k / 3.0)
+        tone = torch.where(frame | barred, draw.uniform(0.4, 1.5), draw.uniform(0.75, 1.25))
+        images = torch.where(inside | (frame & bare & draw.chance(1.0 - k / 3.0)), images * tone, images)
+    return images
 
 
 def glare(draw, images):
@@ -189,10 +238,16 @@ def changed(draw, images, labels, floor):
     if floor is not None:
         images = on_some(0.4, lambda d, x, y: new_floor(d, x, y, floor), images, labels)
     images = on_some(0.09, lambda d, x: x * floor_texture(d, size), images)
+    if floor is not None:
+        images = on_some(0.2, lambda d, x, y: plates(d, x, y, floor), images, labels)
     images = on_some(0.25, lambda d, x: x * shadow(d, size), images)
+    if floor is not None:
+        images = on_some(0.3, shade, images)
     field = smooth_field(len(images), size, int(torch.randint(1, 4, (1,))), images.device)
     images = images * torch.exp(torch.where(draw.chance(0.3), 0.2 * field, 0.0))
     images = on_some(0.3, glare, images)
+    if floor is not None:
+        images = on_some(0.35, cameras, images)
     images = new_tones(draw, images)
     images = on_some(0.25, lambda d, x: coarser(x), images)
     images = on_some(0.25, lambda d, x: blurred(x, d.uniform(0.2, 1.2), d.uniform(0.2, 1.2), reach=3),

@@ -28,15 +28,15 @@ class Clock:
         return self.elapsed() / (60.0 * self.minutes)
 
 
-def rate_at(done, step, highest):
-    return highest * min(1.0, (step + 1) / 300) * (0.5 * (1 + np.cos(np.pi * min(done, 1.0))) + 0.003)
+def rate_at(done, step, highest, warm_up):
+    return highest * min(1.0, (step + 1) / warm_up) * (0.5 * (1 + np.cos(np.pi * min(done, 1.0))) + 0.003)
 
 
 class Mean:
-    """Exponential mean of the weights, which is what gets exported."""
+    """Exponential mean of the weights over about so many steps, which is what gets exported."""
 
-    def __init__(self, network, decay=0.9985):
-        self.decay, self.network = decay, network
+    def __init__(self, network, steps):
+        self.decay, self.network = 1.0 - 1.0 / steps, network
         self.state = {k: v.detach().clone() for k, v in network.state_dict().items()}
 
     @torch.no_grad()
@@ -49,11 +49,20 @@ class Mean:
         torch._foreach_add_(averages, [now[k] for k in floats], alpha=1.0 - decay)
 
 
+def add_pace(parser):
+    parser.add_argument("--warm-up", type=int, default=300, help="steps until the rate is whole [300]")
+    parser.add_argument("--mean-steps", type=int, default=667,
+                        help="steps that the exported mean of the weights reaches back [667]")
+
+
 def check(parser, arguments):
     """Ends the program where it has no device, or no folder to read."""
     if torch.device(arguments.device).type == "cuda" and not torch.cuda.is_available():
         parser.error(f"--device {arguments.device}: torch finds none here (train.py and train_text.py "
                      "learn on the processor; --device cpu tries this program there)")
+    for name in ("warm_up", "mean_steps"):
+        if getattr(arguments, name) < 1:
+            parser.error(f"--{name.replace('_', '-')} {getattr(arguments, name)}: one step at least")
     for folder in arguments.data:
         if not os.path.isdir(folder):
             parser.error(f"--data {folder}: no such folder")
@@ -65,12 +74,12 @@ def learn(a, clock, network, make, loss_of, take, judge, path, said_too):
     goes to path with what said_too holds."""
     log = open(os.path.splitext(path)[0] + ".txt", "a", buffering=1)
     optimiser = torch.optim.AdamW(network.parameters(), lr=a.rate, weight_decay=1e-2)
-    mean = Mean(network)
+    mean = Mean(network, a.mean_steps)
     step, losses, polled, said, done = 0, [], time.time(), time.time(), 0.0
     while done < 1.0:
         done = clock.done() if step % 20 == 0 else done
         for group in optimiser.param_groups:
-            group["lr"] = rate_at(done, step, a.rate)
+            group["lr"] = rate_at(done, step, a.rate, a.warm_up)
         loss = loss_of()
         optimiser.zero_grad(set_to_none=True)
         loss.backward()

@@ -24,7 +24,7 @@ from classes import IGNORE, NETWORKS  # noqa: E402
 from device_data import Pictures, Reader, read_pictures  # noqa: E402
 from network import MEAN, PICTURES, SCALE, full_size, make_network  # noqa: E402
 from scores import Confusion, table  # noqa: E402
-from device_training import Clock, check, learn  # noqa: E402
+from device_training import Clock, add_pace, check, learn  # noqa: E402
 from train import class_weights  # noqa: E402
 from warm_start import load, settle  # noqa: E402
 
@@ -81,6 +81,7 @@ def main():
     parser.add_argument("--device", default="cuda")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--warm-start", help="a state file or an exported .onnx to begin with")
+    add_pace(parser)
     a = parser.parse_args()
     check(parser, a)
     os.makedirs(a.out, exist_ok=True)

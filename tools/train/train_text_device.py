@@ -22,7 +22,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from batch_augment import Draw, blurred, coarser  # noqa: E402
 from classes import is_validation  # noqa: E402
 from device_data import Growing, Reader, read_texts  # noqa: E402
-from device_training import Clock, check, learn  # noqa: E402
+from device_training import Clock, add_pace, check, learn  # noqa: E402
 from text_data import fonts, rendered, shares_read, text_weight  # noqa: E402
 from text_network import HEIGHT, MEAN, SCALE, WIDTH, WIDTHS, TextNetwork, encode, read  # noqa: E402
 from warm_start import load, settle  # noqa: E402
@@ -122,6 +122,7 @@ def main():
     parser.add_argument("--device", default="cuda")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--warm-start", help="a text.pt or an exported .onnx to begin with")
+    add_pace(parser)
     a = parser.parse_args()
     check(parser, a)
     os.makedirs(a.out, exist_ok=True)
