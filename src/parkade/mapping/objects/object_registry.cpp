@@ -8,7 +8,6 @@
 
 #include "parkade/mapping/frame_evidence.hpp"
 #include "parkade/mapping/map_check.hpp"
-#include "parkade/mapping/objects/marker_grid.hpp"
 
 namespace parkade {
 namespace {
@@ -205,29 +204,6 @@ bool ObjectRegistry::exists(const Track& track) const {
   return existence(track) > 0.0 && track.votes.own >= options_.min_own_share * looks_alike;
 }
 
-// Who passes a marker sees it from many places. One that was measured once all the same, where no
-// pillar is, was put together from bearings to different ones; so was one further away that bears
-// the name of another, well known.
-bool ObjectRegistry::isPhantom(const Track& marker) const {
-  constexpr double kPillarNear = 1.5;  // m
-  constexpr int kWellKnown = 3;        // observations
-  if (marker.observations > 1) return false;
-  const Eigen::Vector2d p = marker.position.head<2>();
-  const std::string name = marker.texts.best();
-  const auto namesake = [&](const Track& track) {
-    return track.semantic_class == SemanticClass::kZoneMarker && track.observations >= kWellKnown &&
-           track.texts.best() == name;
-  };
-  if (!way_.passed(p, options_.marker_reach_m) &&
-      (name.empty() || std::none_of(tracks_.begin(), tracks_.end(), namesake))) {
-    return false;
-  }
-  return std::none_of(tracks_.begin(), tracks_.end(), [&](const Track& track) {
-    return track.semantic_class == SemanticClass::kPillar &&
-           (track.position.head<2>() - p).norm() < kPillarNear && exists(track);
-  });
-}
-
 // Those that exist, none on another; ordered by id.
 std::vector<const ObjectRegistry::Track*> ObjectRegistry::told() const {
   std::vector<const Track*> order;
@@ -263,29 +239,6 @@ std::vector<const ObjectRegistry::Track*> ObjectRegistry::told() const {
   return told;
 }
 
-// Their texts; what is written on zone markers, all of them together tell.
-std::vector<std::string> ObjectRegistry::textsOf(const std::vector<const Track*>& told) {
-  TextFormat format;
-  for (const Track* track : told) {
-    if (track->semantic_class != SemanticClass::kZoneMarker) continue;
-    const std::string text = track->texts.best();
-    if (!text.empty()) format.add(text);
-  }
-  std::vector<std::string> texts;
-  std::vector<NamedMarker> markers;
-  for (const Track* track : told) {
-    const bool marker = track->semantic_class == SemanticClass::kZoneMarker;
-    texts.push_back(marker ? track->texts.best(format) : track->texts.best());
-    if (marker) markers.push_back({track->position.head<2>(), texts.back()});
-  }
-  nameByGrid(markers);
-  auto named = markers.begin();
-  for (std::size_t i = 0; i < told.size(); ++i) {
-    if (told[i]->semantic_class == SemanticClass::kZoneMarker) texts[i] = (named++)->text;
-  }
-  return texts;
-}
-
 std::vector<MapObject> ObjectRegistry::objects() const {
   const std::vector<const Track*> tracks = told();
   const std::vector<std::string> texts = textsOf(tracks);
@@ -295,11 +248,12 @@ std::vector<MapObject> ObjectRegistry::objects() const {
     MapObject object;
     object.id = track.id;
     object.semantic_class = track.semantic_class;
-    object.position = track.position;
+    const Track& place = placedBy(track, tracks);
+    object.position << place.position.head<2>(), track.position.z();
     object.heading =
         track.heading.norm() > 0.0 ? std::atan2(track.heading.y(), track.heading.x()) : 0.0;
     // Looks share the errors of calibration and pose, which many of them do not average out.
-    object.position_sigma = std::hypot(std::sqrt(std::max(0.0, track.covariance.trace() / 3.0)),
+    object.position_sigma = std::hypot(std::sqrt(std::max(0.0, place.covariance.trace() / 3.0)),
                                        options_.position_floor_m);
     object.text = texts[i];
     object.outline = track.outline;

@@ -140,6 +140,8 @@ class ObjectRegistry {
   [[nodiscard]] bool compatible(const Track& a, SemanticClass c, const Eigen::Vector3d& p,
                                 double heading, bool has_heading) const;
   [[nodiscard]] std::vector<const Track*> told() const;
+  [[nodiscard]] static const Track& placedBy(const Track& track,
+                                             const std::vector<const Track*>& told);
   [[nodiscard]] static std::vector<std::string> textsOf(const std::vector<const Track*>& told);
   static void fuse(Track& track, const Eigen::Vector3d& p, const Eigen::Matrix3d& covariance);
   void mergeDuplicates();

@@ -159,7 +159,7 @@ std::string Statement::shown(int column) const {
     case SQLITE_FLOAT:
       return fmt::format("{}", sqlite3_column_double(handle_.get(), column));
     case SQLITE_TEXT:
-      return quoted(text(column));
+      return sqlite::quoted(text(column));
     case SQLITE_BLOB:
       return fmt::format("{} bytes", sqlite3_column_bytes(handle_.get(), column));
     default:
