@@ -11,6 +11,17 @@
 namespace parkade {
 namespace {
 
+ObjectObservation observed(SemanticClass semantic_class, const Eigen::Vector3d& position,
+                           const std::string& text = "") {
+  ObjectObservation o;
+  o.semantic_class = semantic_class;
+  o.position = position;
+  o.covariance = 0.01 * Eigen::Matrix3d::Identity();
+  o.text = text;
+  o.confidence = 0.95;
+  return o;
+}
+
 TEST(ObjectRegistry, SignsAreToldWhereCamerasPicturesShowThem) {
   ObjectObservation seen;
   seen.semantic_class = SemanticClass::kGuideSign;
@@ -35,16 +46,8 @@ TEST(ObjectRegistry, SignsAreToldWhereCamerasPicturesShowThem) {
 }
 
 TEST(ObjectRegistry, AMarkerThatWasPassedIsMeasuredAgainOrStandsOnAPillar) {
-  ObjectObservation marker;
-  marker.semantic_class = SemanticClass::kZoneMarker;
-  marker.position = {12.0, 3.0, 1.6};
-  marker.covariance = 0.01 * Eigen::Matrix3d::Identity();
-  marker.text = "B1";
-  marker.confidence = 0.95;
-  ObjectObservation pillar = marker;
-  pillar.semantic_class = SemanticClass::kPillar;
-  pillar.position = {12.4, 3.0, 0.0};
-  pillar.text.clear();
+  const ObjectObservation marker = observed(SemanticClass::kZoneMarker, {12.0, 3.0, 1.6}, "B1");
+  const ObjectObservation pillar = observed(SemanticClass::kPillar, {12.4, 3.0, 0.0});
   // The marker is seen at the start of a straight way.
   const auto told = [&](double way, int looks, int pillars) {
     ObjectRegistry registry({});
@@ -74,25 +77,14 @@ TEST(ObjectRegistry, AMarkerThatWasPassedIsMeasuredAgainOrStandsOnAPillar) {
 }
 
 TEST(ObjectRegistry, AMarkerMeasuredOnceHangsWhereItsPillarStands) {
-  ObjectObservation marker;
-  marker.semantic_class = SemanticClass::kZoneMarker;
-  marker.position = {12.0, 3.0, 1.6};
-  marker.covariance = 0.01 * Eigen::Matrix3d::Identity();
-  marker.text = "B1";
-  marker.confidence = 0.95;
-  ObjectObservation pillar = marker;
-  pillar.semantic_class = SemanticClass::kPillar;
-  pillar.position = {13.2, 3.1, 0.0};
-  pillar.text.clear();
+  const ObjectObservation marker = observed(SemanticClass::kZoneMarker, {12.0, 3.0, 1.6}, "B1");
+  const ObjectObservation pillar = observed(SemanticClass::kPillar, {13.2, 3.1, 0.0});
   const auto told = [&](int looks, bool another) {
     ObjectRegistry registry({});
     for (int k = 0; k < 4; ++k) {
       std::vector<ObjectObservation> seen = {pillar};
       if (k < looks) seen.push_back(marker);
-      ObjectObservation own = marker;
-      own.position = {13.2, 3.1, 1.6};
-      own.text = "B2";
-      if (another) seen.push_back(own);
+      if (another) seen.push_back(observed(SemanticClass::kZoneMarker, {13.2, 3.1, 1.6}, "B2"));
       registry.update(seen, SE2(), 0.0, k);
     }
     for (const MapObject& object : registry.objects()) {
@@ -106,25 +98,16 @@ TEST(ObjectRegistry, AMarkerMeasuredOnceHangsWhereItsPillarStands) {
 }
 
 TEST(ObjectRegistry, OfTwoMarkersThatBearOneTextTheOneMeasuredMoreIsTold) {
-  ObjectObservation marker;
-  marker.semantic_class = SemanticClass::kZoneMarker;
-  marker.position = {20.0, 3.0, 1.6};
-  marker.covariance = 0.01 * Eigen::Matrix3d::Identity();
-  marker.confidence = 0.95;
+  const ObjectObservation marker = observed(SemanticClass::kZoneMarker, {20.0, 3.0, 1.6}, "B1");
   const auto told = [&](const std::string& other, double apart, bool on_pillar) {
     ObjectRegistry registry({});
     for (int k = 0; k < 4; ++k) {
       ObjectObservation misplaced = marker;
       misplaced.text = other;
       misplaced.position.x() += apart;
-      marker.text = "B1";
       std::vector<ObjectObservation> seen = {marker};
       if (k == 0) seen.push_back(misplaced);
-      ObjectObservation pillar = misplaced;
-      pillar.semantic_class = SemanticClass::kPillar;
-      pillar.position.z() = 0.0;
-      pillar.text.clear();
-      if (on_pillar) seen.push_back(pillar);
+      if (on_pillar) seen.push_back(observed(SemanticClass::kPillar, misplaced.position));
       registry.update(seen, SE2(), 0.0, k);
     }
     std::vector<MapObject> markers = registry.objects();
