@@ -46,6 +46,11 @@ def rotated(draw, size, full_turn):
     return u * angle.cos() + v * angle.sin(), v * angle.cos() - u * angle.sin()
 
 
+def about(draw, along, reach):
+    """A coordinate from somewhere within reach of the picture's middle on."""
+    return along - along.mean((2, 3), keepdim=True) + draw.uniform(-reach, reach)
+
+
 def floor_texture(draw, size):
     """A pattern that multiplies the floor: paving stones, stripes, patches or grains."""
     batch, device = draw.shape[0], draw.device
@@ -72,7 +77,7 @@ def floor_texture(draw, size):
 def shadow(draw, size):
     """Sunlight past edges: half planes and bands, darker or brighter."""
     a, _ = rotated(draw, size, 2 * math.pi)
-    a = a - a.mean((2, 3), keepdim=True) + draw.uniform(-120, 120)
+    a = about(draw, a, 120)
     soft = draw.uniform(0.3, 6)
     inside = torch.sigmoid(a / soft)
     band = torch.sigmoid(-(a - draw.uniform(15, 150)) / soft)
@@ -84,8 +89,8 @@ def cameras(draw, images):
     """As cameras that expose and balance colours each for itself, stitched with seams: pictures before, behind and
     beside the car part along rays from its corners."""
     u, v = coordinates(images.shape[2:], draw.device)
-    x = u - u.mean() + draw.uniform(-40, 40)
-    y = v - v.mean() + draw.uniform(-40, 40)
+    x = about(draw, u, 40)
+    y = about(draw, v, 40)
     beside = (x.abs() - draw.uniform(15, 35)) * draw.uniform(0.4, 1.6)
     soft = draw.uniform(0.2, 8)
     ends = torch.sigmoid((y.abs() - draw.uniform(40, 75) - beside.clamp(min=0)) / soft)
@@ -102,8 +107,8 @@ def shade(draw, images):
     field = smooth_field(len(images), size, int(torch.randint(1, 16, (1,))), draw.device)
     inside = torch.sigmoid((field - draw.normal(0.3, 0.6)) / draw.uniform(0.01, 0.3))
     a, b = rotated(draw, size, math.pi)
-    a = (a - a.mean((2, 3), keepdim=True) + draw.uniform(-60, 60)).abs() - draw.uniform(20, 70)
-    b = (b - b.mean((2, 3), keepdim=True) + draw.uniform(-60, 60)).abs() - draw.uniform(15, 60)
+    a = about(draw, a, 60).abs() - draw.uniform(20, 70)
+    b = about(draw, b, 60).abs() - draw.uniform(15, 60)
     box = torch.sigmoid(-torch.maximum(a, b) / draw.uniform(0.5, 4))
     inside = torch.where(draw.chance(0.3), box, inside)
     dark = draw.uniform(0.25, 0.85) * torch.exp(draw.normal(0, 0.04, 3))
@@ -116,8 +121,8 @@ def plates(draw, images, labels, floor):
     bare = (labels == floor)[:, None]
     for k in range(3):
         a, b = rotated(draw, size, math.pi)
-        a = a - a.mean((2, 3), keepdim=True) + draw.uniform(-170, 170)
-        b = b - b.mean((2, 3), keepdim=True) + draw.uniform(-170, 170)
+        a = about(draw, a, 170)
+        b = about(draw, b, 170)
         half = draw.uniform(5, 28)
         edge = torch.maximum(a.abs() - half, b.abs() - half * draw.uniform(0.5, 1.6))
         frame = (edge.abs() < draw.uniform(0.4, 1.4)) & draw.chance(0.7)
@@ -133,8 +138,8 @@ def glare(draw, images):
     size = images.shape[2:]
     for k in range(3):
         a, b = rotated(draw, size, math.pi)
-        a = (a - a.mean((2, 3), keepdim=True) + draw.uniform(-190, 190)) / draw.uniform(10, 90)
-        b = (b - b.mean((2, 3), keepdim=True) + draw.uniform(-190, 190)) / draw.uniform(4, 30)
+        a = about(draw, a, 190) / draw.uniform(10, 90)
+        b = about(draw, b, 190) / draw.uniform(4, 30)
         blob = torch.exp(-0.5 * (a * a + b * b).clamp(max=50.0))
         strength = draw.uniform(20, 160) * draw.uniform(0.8, 1.0, 3)
         images = images + blob * strength * (draw.chance(1.0 - k / 3.0))

@@ -49,7 +49,13 @@ class Mean:
         torch._foreach_add_(averages, [now[k] for k in floats], alpha=1.0 - decay)
 
 
-def add_pace(parser):
+def add_learning(parser):
+    """The options of every training on a device but for the batch."""
+    parser.add_argument("--out", required=True)
+    parser.add_argument("--minutes", type=float, default=25.0)
+    parser.add_argument("--rate", type=float, default=2e-3)
+    parser.add_argument("--device", default="cuda")
+    parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--warm-up", type=int, default=300, help="steps until the rate is whole [300]")
     parser.add_argument("--mean-steps", type=int, default=667,
                         help="steps that the exported mean of the weights reaches back [667]")

@@ -24,7 +24,7 @@ from classes import IGNORE, NETWORKS  # noqa: E402
 from device_data import Pictures, Reader, read_pictures  # noqa: E402
 from network import MEAN, PICTURES, SCALE, full_size, make_network  # noqa: E402
 from scores import Confusion, table  # noqa: E402
-from device_training import Clock, add_pace, check, learn  # noqa: E402
+from device_training import Clock, add_learning, check, learn  # noqa: E402
 from train import class_weights  # noqa: E402
 from warm_start import load, settle  # noqa: E402
 
@@ -70,18 +70,13 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", nargs="+", required=True, help="folders of make_data.py")
     parser.add_argument("--network", choices=list(PICTURES), required=True)
-    parser.add_argument("--out", required=True)
-    parser.add_argument("--minutes", type=float, default=25.0)
     parser.add_argument("--batch", type=int, default=32)
-    parser.add_argument("--rate", type=float, default=2e-3)
     parser.add_argument("--plain", type=float, default=0.4,
                         help="share of pictures that stay nearly as they were drawn [0.4]")
     parser.add_argument("--begin-with", type=int, default=200, help="pictures to wait for at first [200]")
     parser.add_argument("--readers", type=int, default=2, help="processes that read pictures [2]")
-    parser.add_argument("--device", default="cuda")
-    parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--warm-start", help="a state file or an exported .onnx to begin with")
-    add_pace(parser)
+    add_learning(parser)
     a = parser.parse_args()
     check(parser, a)
     os.makedirs(a.out, exist_ok=True)

@@ -22,7 +22,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from batch_augment import Draw, blurred, coarser  # noqa: E402
 from classes import is_validation  # noqa: E402
 from device_data import Growing, Reader, read_texts  # noqa: E402
-from device_training import Clock, add_pace, check, learn  # noqa: E402
+from device_training import Clock, add_learning, check, learn  # noqa: E402
 from text_data import fonts, rendered, shares_read, text_weight  # noqa: E402
 from text_network import HEIGHT, MEAN, SCALE, WIDTH, WIDTHS, TextNetwork, encode, read  # noqa: E402
 from warm_start import load, settle  # noqa: E402
@@ -111,18 +111,13 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", nargs="+", required=True, help="folders of make_data.py with texts")
     parser.add_argument("--network", choices=list(WIDTHS), default="text-wide")
-    parser.add_argument("--out", required=True)
-    parser.add_argument("--minutes", type=float, default=25.0)
     parser.add_argument("--batch", type=int, default=256)
-    parser.add_argument("--rate", type=float, default=2e-3)
     parser.add_argument("--rendered", type=int, default=12000, help="rendered faces [12000]")
     parser.add_argument("--rendered-share", type=float, default=0.15, help="of a batch [0.15]")
     parser.add_argument("--begin-with", type=int, default=2000, help="patches to wait for at first")
     parser.add_argument("--readers", type=int, default=1)
-    parser.add_argument("--device", default="cuda")
-    parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--warm-start", help="a text.pt or an exported .onnx to begin with")
-    add_pace(parser)
+    add_learning(parser)
     a = parser.parse_args()
     check(parser, a)
     os.makedirs(a.out, exist_ok=True)

@@ -4,9 +4,6 @@
 
 #include <set>
 
-#include "parkade/mapping/map_check.hpp"
-#include "parkade/mapping/objects/label_sight.hpp"
-#include "parkade/mapping/objects/level_view_test_support.hpp"
 #include "parkade/mapping/objects/object_registry.hpp"
 #include "parkade/mapping/slots/slot_registry.hpp"
 #include "parkade/mapping/synthetic_plan.hpp"

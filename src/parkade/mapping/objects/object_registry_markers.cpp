@@ -20,18 +20,16 @@ bool ObjectRegistry::isPhantom(const Track& marker) const {
   constexpr int kWellKnown = 3;  // observations
   if (marker.observations > 1) return false;
   const Eigen::Vector2d p = marker.position.head<2>();
-  const std::string name = marker.texts.best();
-  const auto namesake = [&](const Track& track) {
-    return track.semantic_class == SemanticClass::kZoneMarker && track.observations >= kWellKnown &&
-           track.texts.best() == name;
-  };
-  if (!way_.passed(p, options_.marker_reach_m) &&
-      (name.empty() || std::none_of(tracks_.begin(), tracks_.end(), namesake))) {
-    return false;
-  }
-  return std::none_of(tracks_.begin(), tracks_.end(), [&](const Track& track) {
+  const auto carries = [&](const Track& track) {
     return track.semantic_class == SemanticClass::kPillar &&
            (track.position.head<2>() - p).norm() < kPillarNear && exists(track);
+  };
+  if (std::any_of(tracks_.begin(), tracks_.end(), carries)) return false;
+  if (way_.passed(p, options_.marker_reach_m)) return true;
+  const std::string name = marker.texts.best();
+  return !name.empty() && std::any_of(tracks_.begin(), tracks_.end(), [&](const Track& track) {
+    return track.semantic_class == SemanticClass::kZoneMarker && track.observations >= kWellKnown &&
+           track.texts.best() == name;
   });
 }
 

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/mapping/objects/object_registry.hpp"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
-#include "parkade/mapping/map_check.hpp"
+#include <string>
+#include <vector>
+
 #include "parkade/mapping/objects/label_sight.hpp"
 #include "parkade/mapping/objects/level_view_test_support.hpp"
 
