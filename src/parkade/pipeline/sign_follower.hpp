@@ -40,6 +40,7 @@ struct SignFollowerOptions {
     options.height_m = 0.45;
     options.height_sigma_m = 0.15;
     options.place_sigma_m = 0.15;  // what is seen of a wide one is seldom all of it
+    options.told_sigma_m = 0.45;   // whoever drives at one sees little of how far it is
     options.told_views = 4;
     options.told_confidence = 0.0;
     return options;
@@ -47,6 +48,7 @@ struct SignFollowerOptions {
   static ZoneMarkerTrackerOptions plate() {
     ZoneMarkerTrackerOptions options = hanging();
     options.place_sigma_m = 0.08;
+    options.told_views = 3;
     return options;
   }
 };

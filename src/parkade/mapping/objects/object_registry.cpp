@@ -99,6 +99,7 @@ void ObjectRegistry::update(const std::vector<ObjectObservation>& observations,
       track.semantic_class = o.semantic_class;
       track.position = p;
       track.covariance = covariance;
+      if (track.isSign()) lookBack(track);
       tracks_.push_back(track);
     } else {
       used[best] = true;
@@ -121,7 +122,7 @@ void ObjectRegistry::update(const std::vector<ObjectObservation>& observations,
   if (labels != nullptr) look(*labels, T_world_vehicle, used);
   for (const LevelView& view : views) {
     lookAcross(view, T_world_vehicle);
-    lookUp(view, T_world_vehicle, z_vehicle);
+    lookUp({view, T_world_vehicle, z_vehicle, anchor});
   }
 }
 
@@ -161,6 +162,9 @@ void ObjectRegistry::mergeDuplicates() {
 
 void ObjectRegistry::moveWithAnchors(const std::function<SE2(std::int64_t)>& correction) {
   way_.moveWithAnchors(correction);
+  for (Look& look : looks_) {
+    look.T_world_vehicle = correction(look.anchor) * look.T_world_vehicle;
+  }
   for (Track& track : tracks_) {
     const SE2 T = correction(track.anchor);
     Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
@@ -174,6 +178,7 @@ void ObjectRegistry::moveWithAnchors(const std::function<SE2(std::int64_t)>& cor
 }
 
 void ObjectRegistry::raise(double dz) {
+  for (Look& look : looks_) look.z_vehicle += dz;
   for (Track& track : tracks_) track.position.z() += dz;
 }
 
@@ -211,9 +216,8 @@ std::vector<const ObjectRegistry::Track*> ObjectRegistry::told() const {
     if (exists(track)) order.push_back(&track);
   }
   const auto rank = [this](const Track* track) {
-    return track->semantic_class == SemanticClass::kZoneMarker
-               ? static_cast<double>(track->observations)
-               : existence(*track);
+    return isFollowed(track->semantic_class) ? static_cast<double>(track->observations)
+                                             : existence(*track);
   };
   std::stable_sort(order.begin(), order.end(),
                    [&](const Track* a, const Track* b) { return rank(a) > rank(b); });
@@ -228,6 +232,7 @@ std::vector<const ObjectRegistry::Track*> ObjectRegistry::told() const {
       if (other->semantic_class != track->semantic_class) return false;
       const double distance = (other->position - track->position).head<2>().norm();
       return overlapShare(other->outline, track->outline) > options_.duplicate_overlap ||
+             (track->isSign() && distance < options_.max_distance_m) ||
              (track->semantic_class == SemanticClass::kPillar && sighted_ &&
               distance < kPillarSpacing) ||
              (!text.empty() && distance < kPillarSpacing && other->texts.best() == text);

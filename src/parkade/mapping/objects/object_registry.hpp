@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <string>
 #include <vector>
@@ -127,12 +128,22 @@ class ObjectRegistry {
     [[nodiscard]] bool isUpright() const;
     [[nodiscard]] bool isSign() const;
   };
+  /// A camera's picture and where it was taken.
+  struct Look {
+    LevelView view;
+    SE2 T_world_vehicle;
+    double z_vehicle = 0.0;
+    std::int64_t anchor = 0;
+  };
   [[nodiscard]] std::size_t match(const ObjectObservation& o, double heading,
                                   const Eigen::Vector3d& p, const Eigen::Matrix3d& covariance,
                                   const std::vector<bool>& used) const;
   void look(const BevLabels& labels, const SE2& T_world_vehicle, const std::vector<bool>& observed);
   void lookAcross(const LevelView& view, const SE2& T_world_vehicle);
-  void lookUp(const LevelView& view, const SE2& T_world_vehicle, double z_vehicle);
+  /// Signs are told late, when their best views are over: a new one is looked for in those, too.
+  void lookBack(Track& sign) const;
+  void lookUp(Look look);
+  static void lookUpAt(Track& sign, const Look& look);
   /// Log-odds.
   [[nodiscard]] double existence(const Track& track) const;
   [[nodiscard]] bool exists(const Track& track) const;
@@ -148,6 +159,7 @@ class ObjectRegistry {
 
   ObjectRegistryOptions options_;
   std::vector<Track> tracks_;
+  std::deque<Look> looks_;  ///< the latest, oldest first
   DrivenWay way_;
   std::int64_t next_id_ = 1;
   bool sighted_ = false;  ///< labels were given

@@ -47,6 +47,40 @@ TEST(ObjectRegistry, SignsAreToldWhereCamerasPicturesShowThem) {
   EXPECT_EQ(told(4, 20), 0U);
 }
 
+TEST(ObjectRegistry, ASignThatIsMeasuredLateIsFoundInThePicturesBefore) {
+  const ObjectObservation seen = observed(SemanticClass::kGuideSign, {5.0, 1.0, 2.2});
+  LevelView shown = testing::emptyLevelView();
+  testing::drawColumn(shown, seen.position.head<2>(), 0.8, SemanticClass::kGuideSign, 2.0, 2.4);
+  // Three pictures, a correction of the way, and the sign measured from where the car is then.
+  const auto told = [&](int pictures, double correction, double measured) {
+    ObjectRegistry registry({});
+    for (int k = 0; k < pictures; ++k) registry.update({}, SE2(), 0.0, 0, nullptr, {shown});
+    registry.moveWithAnchors([&](std::int64_t) { return SE2(0.0, {0.0, correction}); });
+    registry.raise(measured > 0.0 ? 0.5 : 0.0);
+    const SE2 T_world_vehicle(0.0, {0.0, measured});
+    registry.update({seen}, T_world_vehicle, measured > 0.0 ? 0.5 : 0.0, 0, nullptr,
+                    {testing::emptyLevelView({0.0, 0.0, 20.0})});
+    return registry.objects().size();
+  };
+  EXPECT_EQ(told(3, 0.0, 0.0), 1U);
+  EXPECT_EQ(told(2, 0.0, 0.0), 0U);
+  EXPECT_EQ(told(3, 3.0, 3.0), 1U);
+  EXPECT_EQ(told(3, 3.0, 0.0), 0U);
+}
+
+TEST(ObjectRegistry, OfTwoSignsThatHangNoFartherApartThanOneIsOffOneIsTold) {
+  ObjectRegistry registry({});
+  const ObjectObservation sign = observed(SemanticClass::kSpeedLimitSign, {5.0, 1.0, 2.2}, "10");
+  const ObjectObservation beside = observed(SemanticClass::kSpeedLimitSign, {5.0, 1.9, 2.2}, "10");
+  const ObjectObservation other = observed(SemanticClass::kSpeedLimitSign, {5.0, 3.5, 2.2}, "10");
+  registry.update({sign, beside, other}, SE2(), 0.0, 0);
+  registry.update({sign, other}, SE2(), 0.0, 0);
+  const std::vector<MapObject> objects = registry.objects();
+  ASSERT_EQ(objects.size(), 2U);
+  EXPECT_NEAR(objects[0].position.y(), 1.0, 1e-6);
+  EXPECT_NEAR(objects[1].position.y(), 3.5, 1e-6);
+}
+
 TEST(ObjectRegistry, AMarkerThatWasPassedIsMeasuredAgainOrStandsOnAPillar) {
   const ObjectObservation marker = observed(SemanticClass::kZoneMarker, {12.0, 3.0, 1.6}, "B1");
   const ObjectObservation pillar = observed(SemanticClass::kPillar, {12.4, 3.0, 0.0});

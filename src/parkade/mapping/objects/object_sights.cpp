@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Of the object registry: what pictures show where objects are known.
+#include <utility>
+
 #include "parkade/mapping/objects/column_sight.hpp"
 #include "parkade/mapping/objects/object_registry.hpp"
 #include "parkade/mapping/objects/sign_sight.hpp"
@@ -64,16 +66,25 @@ void ObjectRegistry::lookAcross(const LevelView& view, const SE2& T_world_vehicl
   }
 }
 
-void ObjectRegistry::lookUp(const LevelView& view, const SE2& T_world_vehicle, double z_vehicle) {
-  const SE2 T_vehicle_world = T_world_vehicle.inverse();
+void ObjectRegistry::lookUpAt(Track& sign, const Look& look) {
+  Eigen::Vector3d p;
+  p << look.T_world_vehicle.inverse() * sign.position.head<2>(), sign.position.z() - look.z_vehicle;
+  const ColumnSight sight = signSight(look.view, p, sign.semantic_class);
+  sign.in_views.hits += sight == ColumnSight::kThere ? 1 : 0;
+  sign.in_views.misses += sight == ColumnSight::kNotThere ? 1 : 0;
+}
+
+void ObjectRegistry::lookBack(Track& sign) const {
+  for (const Look& look : looks_) lookUpAt(sign, look);
+}
+
+void ObjectRegistry::lookUp(Look look) {
   for (Track& track : tracks_) {
-    if (!track.isSign()) continue;
-    Eigen::Vector3d p;
-    p << T_vehicle_world * track.position.head<2>(), track.position.z() - z_vehicle;
-    const ColumnSight sight = signSight(view, p, track.semantic_class);
-    track.in_views.hits += sight == ColumnSight::kThere ? 1 : 0;
-    track.in_views.misses += sight == ColumnSight::kNotThere ? 1 : 0;
+    if (track.isSign()) lookUpAt(track, look);
   }
+  constexpr std::size_t kKept = 60;  // some 25 m of way with a picture every 0.4 m
+  looks_.push_back(std::move(look));
+  if (looks_.size() > kKept) looks_.pop_front();
 }
 
 }  // namespace parkade

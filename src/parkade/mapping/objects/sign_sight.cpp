@@ -5,9 +5,11 @@
 namespace parkade {
 
 ColumnSight signSight(const LevelView& view, const Eigen::Vector3d& p, SemanticClass sign) {
-  // Beyond, a sign is a label pixel or two high; nearer, its place tells its direction too badly.
-  constexpr double kNearest = 1.5;   // m
-  constexpr double kFarthest = 9.0;  // m
+  // Nearer, its place tells its direction too badly; far away a sign is a few label pixels high,
+  // that are seen more often than not, and beyond a pixel or two.
+  constexpr double kNearest = 1.5;         // m
+  constexpr double kFarthest = 12.0;       // m
+  constexpr double kFarthestMissed = 9.0;  // m
   const Eigen::Vector2d d = (p - view.eye).head<2>();
   const double distance = d.norm();
   if (distance < kNearest || distance > kFarthest) return ColumnSight::kUnsure;
@@ -34,7 +36,8 @@ ColumnSight signSight(const LevelView& view, const Eigen::Vector3d& p, SemanticC
     }
   }
   if (own >= kEnough) return ColumnSight::kThere;
-  return other == all ? ColumnSight::kNotThere : ColumnSight::kUnsure;
+  return other == all && distance <= kFarthestMissed ? ColumnSight::kNotThere
+                                                     : ColumnSight::kUnsure;
 }
 
 }  // namespace parkade

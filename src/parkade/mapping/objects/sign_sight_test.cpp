@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "parkade/mapping/objects/level_view_test_support.hpp"
 
 namespace parkade {
@@ -40,6 +42,17 @@ TEST(SignSight, NothingIsSaidTooNearOrTooFar) {
   EXPECT_EQ(signSight(view, {0.8, 0.0, 1.5}, kGuide), ColumnSight::kUnsure);
   EXPECT_EQ(signSight(view, {9.5, 0.0, 2.2}, kGuide), ColumnSight::kUnsure);
   EXPECT_EQ(signSight(view, {8.5, 0.0, 2.2}, kGuide), ColumnSight::kNotThere);
+}
+
+TEST(SignSight, AFarOneMayBeSeenButIsNotMissed) {
+  for (const auto& [distance, sight] :
+       {std::pair(11.0, ColumnSight::kThere), {13.0, ColumnSight::kUnsure}}) {
+    LevelView view = emptyLevelView();
+    const Eigen::Vector3d p(distance, 0.0, 2.2);
+    EXPECT_EQ(signSight(view, p, kGuide), ColumnSight::kUnsure);
+    drawColumn(view, p.head<2>(), 0.8, kGuide, 2.0, 2.4);
+    EXPECT_EQ(signSight(view, p, kGuide), sight);
+  }
 }
 
 }  // namespace
