@@ -2,13 +2,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/mapping/frame_evidence.hpp"
 
+#include <opencv2/imgproc.hpp>
+
 #include "parkade/core/check.hpp"
 
 namespace parkade {
 namespace {
 
-// The confidence level of what may be hidden floor: two in three.
+// Confidence levels: of what may be hidden floor, two in three; of floor that may as well be paint.
 constexpr int kHidden = 5;
+constexpr int kOpen = 4;
+
+// The most that floor is sure of where the network holds paint nearly as likely.
+int floorLevel(std::uint8_t paint) {
+  constexpr double kFaint = 4.0;  // log-odds; as often paint as floor, docs/math/grid.md
+  constexpr double kDoubt = 6.0;
+  const double below = (255 - paint) / kEvidencePerLogOdds;
+  return below < kFaint ? kOpen : below < kDoubt ? kHidden : PackedLabels::kConfidenceLevels - 1;
+}
+
+// Not 0 where floor may be faint paint, if it says so: not beside labelled paint.
+cv::Mat awayFromPaint(const BevLabels& labels) {
+  constexpr double kEdge = 0.08;  // m
+  const int edge = static_cast<int>(std::lround(kEdge / labels.geometry.metres_per_px));
+  cv::Mat paint;
+  cv::inRange(labels.labels, static_cast<int>(SemanticClass::kSlotLine),
+              static_cast<int>(SemanticClass::kPaintedNumber), paint);
+  cv::dilate(paint, paint, cv::Mat::ones(2 * edge + 1, 2 * edge + 1, CV_8UC1));
+  return paint == 0;
+}
 
 }  // namespace
 
@@ -40,6 +62,10 @@ PackedLabels packLabels(const SemanticFrame& frame) {
                 "confidence of {} x {} pixels", confidence.cols, confidence.rows);
   PARKADE_CHECK(smear.empty() || smear.size() == labels.size(), "smear of {} x {} pixels",
                 smear.cols, smear.rows);
+  const cv::Mat& paint = frame.labels.paint;
+  PARKADE_CHECK(paint.empty() || paint.size() == labels.size(), "paint of {} x {} pixels",
+                paint.cols, paint.rows);
+  const cv::Mat open = paint.empty() ? cv::Mat() : awayFromPaint(frame.labels);
   PackedLabels packed;
   packed.geometry = g;
   packed.pixels.resize(static_cast<std::size_t>(g.width_px) *
@@ -54,6 +80,10 @@ PackedLabels packLabels(const SemanticFrame& frame) {
       if (smeared != nullptr && smeared[u] != 0) {
         if (smeared[u] == SemanticFrame::kSmear) continue;
         level = std::min(level, kHidden);
+      }
+      if (label[u] == static_cast<std::uint8_t>(SemanticClass::kFloor) && !open.empty() &&
+          open.at<std::uint8_t>(v, u) != 0) {
+        level = std::min(level, floorLevel(paint.at<std::uint8_t>(v, u)));
       }
       packed.pixels[at] =
           label[u] == 0 ? 0 : static_cast<std::uint8_t>((label[u] & 0x1F) | (level << 5));
@@ -123,9 +153,11 @@ EvidenceKernel::EvidenceKernel(const EvidenceOptions& options)
     const double log_odds = std::log(p / (1.0 - p));
     for (int w = 0; w <= kWeights; ++w) {
       const double seen = options.gain * log_odds * w / kWeights;
+      const int bare =
+          level == kOpen ? 0
+                         : std::max(std::min(1, inSteps(seen)), inSteps(options.bare_share * seen));
       steps_[static_cast<std::size_t>(level)][static_cast<std::size_t>(w)] = {
-          inSteps(seen), std::max(std::min(1, inSteps(seen)), inSteps(options.bare_share * seen)),
-          inSteps(options.dynamic_gain * log_odds)};
+          inSteps(seen), bare, inSteps(options.dynamic_gain * log_odds)};
     }
   }
 }

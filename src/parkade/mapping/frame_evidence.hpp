@@ -43,6 +43,7 @@ struct EvidenceOptions {
 /// Adds evidence in steps of GridCell::kStep; addEvidence() for whole steps, without rounding.
 inline void addSteps(GridCell& cell, SemanticClass semantic_class, int steps) {
   constexpr int kLimit = 112;  // 7.0
+  if (steps == 0) return;
   if (cell.semantic_class == semantic_class) {
     cell.log_odds = static_cast<std::int8_t>(std::min(kLimit, cell.log_odds + steps));
   } else if (!cell.known()) {
@@ -78,6 +79,8 @@ struct PackedLabels {
   [[nodiscard]] double toBorder(const Eigen::Vector2d& p_level) const;
 };
 
+/// Floor where the network holds paint nearly as likely is packed as less sure, but not beside what
+/// it labels as paint, whose blurred edge that is.
 PackedLabels packLabels(const SemanticFrame& frame);
 
 /// Which layers a class speaks of.

@@ -111,6 +111,32 @@ TEST(FrameEvidence, PaintMayBeMissedInSomePictures) {
   EXPECT_EQ(car.at(GridLayer::kAvailability), SemanticClass::kFloor);
 }
 
+TEST(FrameEvidence, FloorThatMayBePaintSaysNothingAgainstIt) {
+  // One picture that shows an arrow, then many of floor, with paint so many log-odds below it.
+  const auto told = [](double below, double edge_m) {
+    ManyPictures arrow;
+    arrow.show(SemanticClass::kArrow, 1);
+    SemanticFrame frame;
+    const BevGeometry& g = frame.labels.geometry;
+    frame.labels.labels = cv::Mat(g.height_px, g.width_px, CV_8UC1, cv::Scalar(1));
+    frame.labels.paint = cv::Mat(g.height_px, g.width_px, CV_8UC1,
+                                 cv::Scalar(std::max(0.0, 255.0 - kEvidencePerLogOdds * below)));
+    const Eigen::Vector2d beside = g.toPixel({2.025, 0.025 + edge_m});
+    frame.labels.labels.at<std::uint8_t>(static_cast<int>(std::lround(beside.y())),
+                                         static_cast<int>(std::lround(beside.x()))) =
+        static_cast<std::uint8_t>(SemanticClass::kArrow);
+    for (int k = 0; k < 10; ++k) {
+      arrow.map.update(packLabels(frame), arrow.t_ns += 100'000'000, SE2());
+    }
+    EXPECT_EQ(arrow.at(GridLayer::kAvailability), SemanticClass::kFloor);
+    return arrow.at(GridLayer::kRoadMarkers);
+  };
+  EXPECT_EQ(told(3.0, 0.3), SemanticClass::kArrow);
+  EXPECT_EQ(told(8.0, 0.3), SemanticClass::kFloor);
+  // What is labelled as paint has blurred edges.
+  EXPECT_EQ(told(3.0, 0.08), SemanticClass::kFloor);
+}
+
 TEST(LocalMap, ShowsWhatIsAroundAndForgetsWhatLeaves) {
   const PlanObserver observer(makePlan(2, 60.0, 0.5, 1), {});
   LocalMapOptions options;

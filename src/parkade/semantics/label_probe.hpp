@@ -31,7 +31,7 @@ class LabelProbe {
   [[nodiscard]] double slotEvidence(const Eigen::Vector2d& p) const {
     constexpr double kNone = -100.0;
     const std::optional<std::uint8_t> value = valueAt(labels_.slot_line, p);
-    return value ? (*value - 255.0) / kSlotLinePerLogOdds : kNone;
+    return value ? (*value - 255.0) / kEvidencePerLogOdds : kNone;
   }
 
   /// What lies along the line from a to b, as shares of its samples, one per pixel.

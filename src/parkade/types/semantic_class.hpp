@@ -40,6 +40,11 @@ inline constexpr std::array<std::string_view, kNumSemanticClasses> kSemanticClas
     "wheel_stop",        "pillar",      "wall",       "ceiling",         "vehicle",
     "pedestrian",        "zone_marker", "guide_sign", "speed_limit_sign"};
 
+/// Painted on the floor (or marked so): it may be worn, or faint.
+constexpr bool isPaint(SemanticClass c) {
+  return c >= SemanticClass::kSlotLine && c <= SemanticClass::kPaintedNumber;
+}
+
 /// Pillar or wall: stands on the ground for good, and nothing is seen through it.
 constexpr bool isStructure(SemanticClass c) {
   return c == SemanticClass::kPillar || c == SemanticClass::kWall;

@@ -22,8 +22,8 @@
 
 namespace parkade {
 
-/// Steps of BevLabels::slot_line that a log-odds of one takes.
-constexpr double kSlotLinePerLogOdds = 25.0;
+/// Steps of BevLabels' evidence (slot_line, paint) that a log-odds of one takes.
+constexpr double kEvidencePerLogOdds = 25.0;
 
 /// The class of every pixel of a bird's-eye picture.
 struct BevLabels {
@@ -32,9 +32,10 @@ struct BevLabels {
   cv::Mat labels;      ///< CV_8UC1: SemanticClass; kUnknown where nothing is seen
   cv::Mat confidence;  ///< CV_8UC1: probability of that class, 255 = 1
   /// CV_8UC1, or empty: the evidence of a slot line, whatever the label. 255 where the network says
-  /// one; less by kSlotLinePerLogOdds for each by which it holds another class likelier; at least
+  /// one; less by kEvidencePerLogOdds for each by which it holds another class likelier; at least
   /// 0.
   cv::Mat slot_line;
+  cv::Mat paint;  ///< the same of any paint (isPaint)
 };
 
 /// A point on the middle of a painted line, measured to a fraction of a pixel across the line.

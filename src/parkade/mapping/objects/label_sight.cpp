@@ -26,7 +26,7 @@ bool isOwn(SemanticClass label, SemanticClass c) {
   return label == c || (label == SemanticClass::kZoneMarker && c == SemanticClass::kPillar);
 }
 
-bool isPaint(SemanticClass label) {
+bool isMarking(SemanticClass label) {
   const LayerRole role = roleOf(label);
   return role == LayerRole::kLine || role == LayerRole::kRoadMarker;
 }
@@ -47,7 +47,7 @@ AreaShares LabelSight::of(const std::vector<Vector2d>& outline,
   // Two pixels apart tells shares well enough, and large areas at most 24 samples a side.
   const double step =
       std::max(2.0 * labels_.geometry.metres_per_px, (high - low).maxCoeff() / 24.0);
-  const bool paint = isPaint(semantic_class);
+  const bool paint = isMarking(semantic_class);
   int all = 0;
   int own = 0;
   int rival = 0;
@@ -68,9 +68,9 @@ AreaShares LabelSight::of(const std::vector<Vector2d>& outline,
       if (label == SemanticClass::kUnknown) continue;
       if (isOwn(label, semantic_class)) {
         ++own;
-      } else if (paint && isPaint(label)) {
+      } else if (paint && isMarking(label)) {
         ++rival;
-      } else if (isPaint(label) || roleOf(label) == LayerRole::kGround) {
+      } else if (isMarking(label) || roleOf(label) == LayerRole::kGround) {
         ++floor;
       } else {
         ++covered;

@@ -10,17 +10,11 @@
 #include <vector>
 
 #include "parkade/core/median.hpp"
-#include "parkade/semantics/markings/marking_pieces.hpp"
 #include "parkade/types/semantic_class.hpp"
 #include "parkade/types/semantic_features.hpp"
 
 namespace parkade {
 namespace {
-
-bool isPaint(std::uint8_t label) {
-  const auto c = static_cast<SemanticClass>(label);
-  return c != SemanticClass::kFloor && c != SemanticClass::kWheelStop && !hidesGround(c);
-}
 
 // Pieces of paint of one class, connected over edges and corners of pixels.
 class Pieces {
@@ -28,7 +22,8 @@ class Pieces {
   explicit Pieces(const cv::Mat& labels) : ids_(labels.size(), CV_32SC1, cv::Scalar(kNone)) {
     for (int v = 0; v < labels.rows; ++v) {
       for (int u = 0; u < labels.cols; ++u) {
-        if (isPaint(labels.at<std::uint8_t>(v, u)) && id(v, u) == kNone) fill(labels, v, u);
+        const auto c = static_cast<SemanticClass>(labels.at<std::uint8_t>(v, u));
+        if (isPaint(c) && id(v, u) == kNone) fill(labels, v, u);
       }
     }
   }
@@ -160,7 +155,7 @@ std::vector<DoubtedPiece> doubtedPieces(const cv::Mat& area, const cv::Mat& pain
       piece.pixels.emplace_back(u, v);
       if (labels.at<std::uint8_t>(v, u) != doubted) continue;
       ++piece.doubted;
-      piece.below += (255.0 - slot_line.at<std::uint8_t>(v, u)) / kSlotLinePerLogOdds;
+      piece.below += (255.0 - slot_line.at<std::uint8_t>(v, u)) / kEvidencePerLogOdds;
     }
   }
   return pieces;

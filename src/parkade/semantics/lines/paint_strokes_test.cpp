@@ -61,7 +61,7 @@ cv::Mat strokesAndArrow(double doubt, cv::Mat& slot_line) {
     paint(labels, {92 - half, 18 + v, 2 * half, 1}, SemanticClass::kArrow);
   }
   paint(labels, {94, 80, 20, 3}, SemanticClass::kSlotLine);
-  slot_line = cv::Mat(labels.size(), CV_8UC1, cv::Scalar(255.0 - kSlotLinePerLogOdds * doubt));
+  slot_line = cv::Mat(labels.size(), CV_8UC1, cv::Scalar(255.0 - kEvidencePerLogOdds * doubt));
   return labels;
 }
 
@@ -97,7 +97,7 @@ cv::Mat cornerAndLane(double doubt, cv::Mat& slot_line) {
   paint(labels, {20, 20, 4, 40}, SemanticClass::kSlotLine);
   paint(labels, {25, 20, 60, 4}, SemanticClass::kLaneLine);
   paint(labels, {20, 90, 60, 4}, SemanticClass::kLaneLine);
-  slot_line = cv::Mat(labels.size(), CV_8UC1, cv::Scalar(255.0 - kSlotLinePerLogOdds * doubt));
+  slot_line = cv::Mat(labels.size(), CV_8UC1, cv::Scalar(255.0 - kEvidencePerLogOdds * doubt));
   return labels;
 }
 
@@ -114,7 +114,7 @@ TEST(PaintStrokes, LaneLinesMakeNoT) {
   paint(labels, {20, 20, 4, 16}, SemanticClass::kLaneLine);
   paint(labels, {24, 26, 40, 4}, SemanticClass::kLaneLine);
   paint(labels, {20, 90, 60, 4}, SemanticClass::kLaneLine);
-  const cv::Mat slot_line(labels.size(), CV_8UC1, cv::Scalar(255.0 - kSlotLinePerLogOdds * 2.0));
+  const cv::Mat slot_line(labels.size(), CV_8UC1, cv::Scalar(255.0 - kEvidencePerLogOdds * 2.0));
   tellSlotsFromLanes(slot_line, kScale, labels);
   EXPECT_EQ(at(labels, 27, 50), SemanticClass::kSlotLine);
   EXPECT_EQ(at(labels, 22, 21), SemanticClass::kSlotLine);

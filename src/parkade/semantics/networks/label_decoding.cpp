@@ -40,11 +40,11 @@ void addExponentials(const float* __restrict row, const float* __restrict best, 
   }
 }
 
-// Evidence of slot lines (BevLabels::slot_line): how far row lies below best. Keeps the larger.
+// Evidence as in BevLabels: how far row lies below best. Keeps the larger.
 PARKADE_ISA_CLONES
 void keepEvidence(const float* __restrict row, const float* __restrict best, int width,
                   std::int32_t* __restrict evidence) {
-  constexpr auto kStep = static_cast<float>(kSlotLinePerLogOdds);
+  constexpr auto kStep = static_cast<float>(kEvidencePerLogOdds);
   for (int u = 0; u < width; ++u) {
     const float below = kStep * (best[u] - row[u]);
     const std::int32_t value =
@@ -53,12 +53,18 @@ void keepEvidence(const float* __restrict row, const float* __restrict best, int
   }
 }
 
+bool isSlotLine(SemanticClass c) {
+  return c == SemanticClass::kSlotLine;
+}
+
 // Rows of logits, one per channel, of a row of pixels.
 class RowDecoder {
  public:
   explicit RowDecoder(int width) : best_(width), total_(width), label_(width), evidence_(width) {}
 
-  void decode(const std::vector<const float*>& rows, const std::vector<SemanticClass>& classes) {
+  // Into every stride-th pixel of a row of out, from column on.
+  void decode(const std::vector<const float*>& rows, const std::vector<SemanticClass>& classes,
+              DecodedLabels& out, int row, int column, int stride) {
     const int width = static_cast<int>(best_.size());
     std::copy_n(rows[0], width, best_.begin());
     std::fill(label_.begin(), label_.end(), static_cast<std::int32_t>(classes[0]));
@@ -66,27 +72,25 @@ class RowDecoder {
       keepBest(rows[c], static_cast<std::int32_t>(classes[c]), width, best_.data(), label_.data());
     }
     std::fill(total_.begin(), total_.end(), 0.0F);
-    for (const float* row : rows) addExponentials(row, best_.data(), width, total_.data());
-    std::fill(evidence_.begin(), evidence_.end(), 0);
-    for (std::size_t c = 0; c < rows.size(); ++c) {
-      if (classes[c] != SemanticClass::kSlotLine) continue;
-      keepEvidence(rows[c], best_.data(), width, evidence_.data());
-    }
-  }
-
-  // Every stride-th pixel of a row, from the first on; slot_line may be null.
-  void write(std::uint8_t* labels, std::uint8_t* confidence, std::uint8_t* slot_line,
-             int stride) const {
-    const int width = static_cast<int>(best_.size());
+    for (const float* logits : rows) addExponentials(logits, best_.data(), width, total_.data());
+    std::uint8_t* const labels = out.labels.ptr<std::uint8_t>(row) + column;
+    std::uint8_t* const confidence = out.confidence.ptr<std::uint8_t>(row) + column;
     for (int u = 0; u < width; ++u) {
       labels[u * stride] = static_cast<std::uint8_t>(label_[u]);
       confidence[u * stride] =
           static_cast<std::uint8_t>(std::min(255.0F, 255.0F / total_[u] + 0.5F));
     }
-    if (slot_line == nullptr) return;
-    for (int u = 0; u < width; ++u) {
-      slot_line[u * stride] = static_cast<std::uint8_t>(evidence_[u]);
-    }
+    const auto evidence = [&](bool (*of)(SemanticClass), cv::Mat& picture) {
+      if (picture.empty()) return;
+      std::fill(evidence_.begin(), evidence_.end(), 0);
+      for (std::size_t c = 0; c < rows.size(); ++c) {
+        if (of(classes[c])) keepEvidence(rows[c], best_.data(), width, evidence_.data());
+      }
+      std::uint8_t* const at = picture.ptr<std::uint8_t>(row) + column;
+      for (int u = 0; u < width; ++u) at[u * stride] = static_cast<std::uint8_t>(evidence_[u]);
+    };
+    evidence(isSlotLine, out.slot_line);
+    evidence(isPaint, out.paint);
   }
 
  private:
@@ -98,9 +102,8 @@ class RowDecoder {
 
 }  // namespace
 
-void decodeLogits(const cv::Mat& logits, const std::vector<SemanticClass>& classes,
-                  const cv::Size& size, cv::Mat& labels, cv::Mat& confidence, cv::Mat& slot_line,
-                  bool no_unknown) {
+DecodedLabels decodeLogits(const cv::Mat& logits, const std::vector<SemanticClass>& classes,
+                           const cv::Size& size, bool no_unknown) {
   PARKADE_CHECK(logits.dims == 4 && logits.size[0] == 1 && logits.type() == CV_32F,
                 "logits of {} dimensions", logits.dims);
   const std::size_t count = classes.size();
@@ -114,15 +117,11 @@ void decodeLogits(const cv::Mat& logits, const std::vector<SemanticClass>& class
   PARKADE_CHECK(!channels.empty(), "no class but unknown");
   const int height = logits.size[2];
   const int width = logits.size[3];
-  labels.create(size, CV_8UC1);
-  confidence.create(size, CV_8UC1);
-  slot_line.release();
-  if (std::find(classes.begin(), classes.end(), SemanticClass::kSlotLine) != classes.end()) {
-    slot_line.create(size, CV_8UC1);
-  }
-  const auto evidence = [&](int row) {
-    return slot_line.empty() ? nullptr : slot_line.ptr<std::uint8_t>(row);
-  };
+  DecodedLabels out;
+  out.labels.create(size, CV_8UC1);
+  out.confidence.create(size, CV_8UC1);
+  if (std::any_of(classes.begin(), classes.end(), isSlotLine)) out.slot_line.create(size, CV_8UC1);
+  if (std::any_of(classes.begin(), classes.end(), isPaint)) out.paint.create(size, CV_8UC1);
   const bool blocks = logits.size[1] == static_cast<int>(4 * count);
   PARKADE_CHECK(
       blocks ? size == cv::Size(2 * width, 2 * height) : logits.size[1] == static_cast<int>(count),
@@ -137,15 +136,10 @@ void decodeLogits(const cv::Mat& logits, const std::vector<SemanticClass>& class
           rows[i] =
               logits.ptr<float>(0, 4 * channels[i] + part) + static_cast<std::ptrdiff_t>(v) * width;
         }
-        decoder.decode(rows, meanings);
-        const int row = 2 * v + part / 2;
-        std::uint8_t* const lines = evidence(row);
-        decoder.write(labels.ptr<std::uint8_t>(row) + part % 2,
-                      confidence.ptr<std::uint8_t>(row) + part % 2,
-                      lines == nullptr ? nullptr : lines + part % 2, 2);
+        decoder.decode(rows, meanings, out, 2 * v + part / 2, part % 2, 2);
       }
     }
-    return;
+    return out;
   }
   std::vector<cv::Mat> planes(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -157,9 +151,9 @@ void decodeLogits(const cv::Mat& logits, const std::vector<SemanticClass>& class
   RowDecoder decoder(size.width);
   for (int v = 0; v < size.height; ++v) {
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = planes[i].ptr<float>(v);
-    decoder.decode(rows, meanings);
-    decoder.write(labels.ptr<std::uint8_t>(v), confidence.ptr<std::uint8_t>(v), evidence(v), 1);
+    decoder.decode(rows, meanings, out, v, 0, 1);
   }
+  return out;
 }
 
 }  // namespace parkade

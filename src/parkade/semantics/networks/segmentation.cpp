@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
@@ -49,7 +50,7 @@ struct SegmentationNetwork::Impl {
   [[nodiscard]] Status checkOutput(const cv::Size& size) const;
   // Whether each channel of a class holds one pixel of every 2 x 2 block.
   [[nodiscard]] bool inBlocks(const cv::Size& size) const;
-  Status run(const cv::Mat& image, cv::Mat& labels, cv::Mat& confidence, cv::Mat& slot_line);
+  Result<DecodedLabels> run(const cv::Mat& image);
 };
 
 Status SegmentationNetwork::Impl::forward(const cv::Mat& bgr) {
@@ -99,18 +100,16 @@ bool SegmentationNetwork::Impl::inBlocks(const cv::Size& size) const {
   return map.metres_per_px <= 0.0 && size == cv::Size(step * labels.width, step * labels.height);
 }
 
-Status SegmentationNetwork::Impl::run(const cv::Mat& image, cv::Mat& labels, cv::Mat& confidence,
-                                      cv::Mat& slot_line) {
+Result<DecodedLabels> SegmentationNetwork::Impl::run(const cv::Mat& image) {
   PARKADE_CHECK(image.type() == CV_8UC3 || image.type() == CV_8UC1, "picture of type {}",
                 image.type());
   cv::Mat bgr = image;
   if (image.channels() == 1) cv::cvtColor(image, bgr, cv::COLOR_GRAY2BGR);
   const Status status = forward(bgr);
-  if (!status) return status;
+  if (!status) return status.error();
   const cv::Size size =
       inBlocks(bgr.size()) ? cv::Size(2 * logits.size[3], 2 * logits.size[2]) : bgr.size();
-  decodeLogits(logits, map.classes, size, labels, confidence, slot_line, map.unknown_is_unseen);
-  return {};
+  return decodeLogits(logits, map.classes, size, map.unknown_is_unseen);
 }
 
 SegmentationNetwork::SegmentationNetwork(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -181,29 +180,32 @@ Result<BevLabels> SegmentationNetwork::segment(const BevImage& bev) {
   BevLabels result;
   result.t_ns = bev.t_ns;
   result.geometry = bev.geometry;
-  cv::Mat& slot_line = result.slot_line;
-  const Status status = impl_->run(image, result.labels, result.confidence, slot_line);
-  if (!status) return status.error();
+  Result<DecodedLabels> decoded = impl_->run(image);
+  if (!decoded) return decoded.error();
+  result.labels = decoded->labels;
+  result.confidence = decoded->confidence;
+  result.slot_line = decoded->slot_line;
+  result.paint = decoded->paint;
+  const std::array<cv::Mat*, 4> pictures{&result.labels, &result.confidence, &result.slot_line,
+                                         &result.paint};
   if (size != bev.image.size() || padded != size) {
     // Exact: by the middles of pixels, as the picture was scaled; the other rounds down, half a
     // pixel off.
     const cv::Rect used(cv::Point(), size);
-    cv::resize(result.labels(used).clone(), result.labels, bev.image.size(), 0, 0,
-               cv::INTER_NEAREST_EXACT);
-    cv::resize(result.confidence(used).clone(), result.confidence, bev.image.size(), 0, 0,
-               cv::INTER_NEAREST_EXACT);
-    if (!slot_line.empty()) {
-      cv::resize(slot_line(used).clone(), slot_line, bev.image.size(), 0, 0,
+    for (cv::Mat* picture : pictures) {
+      if (picture->empty()) continue;
+      cv::resize((*picture)(used).clone(), *picture, bev.image.size(), 0, 0,
                  cv::INTER_NEAREST_EXACT);
     }
   }
-  tellStrokesFromArrows(slot_line, bev.geometry.metres_per_px, result.labels);
+  tellStrokesFromArrows(result.slot_line, bev.geometry.metres_per_px, result.labels);
   uniteStrokes(result.labels, bev.geometry.metres_per_px);
-  tellSlotsFromLanes(slot_line, bev.geometry.metres_per_px, result.labels);
+  tellSlotsFromLanes(result.slot_line, bev.geometry.metres_per_px, result.labels);
   const cv::Mat unseen = bev.valid == 0;
-  result.labels.setTo(static_cast<int>(SemanticClass::kUnknown), unseen);
-  result.confidence.setTo(0, unseen);
-  if (!slot_line.empty()) slot_line.setTo(0, unseen);
+  static_assert(static_cast<int>(SemanticClass::kUnknown) == 0);
+  for (cv::Mat* picture : pictures) {
+    if (!picture->empty()) picture->setTo(0, unseen);
+  }
   return result;
 }
 
@@ -215,11 +217,9 @@ Result<ViewLabels> SegmentationNetwork::segmentView(const cv::Mat& image) {
     cv::resize(image, impl_->resized, size, 0, 0, smaller ? cv::INTER_AREA : cv::INTER_LINEAR);
     input = impl_->resized;
   }
-  ViewLabels result;
-  cv::Mat no_lines;
-  const Status status = impl_->run(input, result.labels, result.confidence, no_lines);
-  if (!status) return status.error();
-  return result;
+  Result<DecodedLabels> decoded = impl_->run(input);
+  if (!decoded) return decoded.error();
+  return ViewLabels{decoded->labels, decoded->confidence};
 }
 
 }  // namespace parkade

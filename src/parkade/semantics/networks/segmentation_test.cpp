@@ -196,11 +196,8 @@ TEST(LabelDecoding, ProbabilitiesAreThoseOfSoftmax) {
       logits.ptr<float>(0, c)[i] = static_cast<float>(random.normal(0.0, 4.0));
     }
   }
-  cv::Mat labels;
-  cv::Mat confidence;
-  cv::Mat slot_line;
-  decodeLogits(logits, classes, cv::Size(31, 9), labels, confidence, slot_line);
-  EXPECT_TRUE(slot_line.empty());
+  const DecodedLabels decoded = decodeLogits(logits, classes, cv::Size(31, 9));
+  EXPECT_TRUE(decoded.slot_line.empty());
   for (int i = 0; i < 9 * 31; ++i) {
     int best = 0;
     double total = 0.0;
@@ -209,28 +206,31 @@ TEST(LabelDecoding, ProbabilitiesAreThoseOfSoftmax) {
     }
     const double top = logits.ptr<float>(0, best)[i];
     for (int c = 0; c < 4; ++c) total += std::exp(logits.ptr<float>(0, c)[i] - top);
-    ASSERT_EQ(labels.data[i], static_cast<int>(classes[static_cast<std::size_t>(best)]));
-    ASSERT_NEAR(confidence.data[i], 255.0 / total, 1.1);
+    ASSERT_EQ(decoded.labels.data[i], static_cast<int>(classes[static_cast<std::size_t>(best)]));
+    ASSERT_NEAR(decoded.confidence.data[i], 255.0 / total, 1.1);
   }
 }
 
-TEST(LabelDecoding, EvidenceOfSlotLinesIsWhatTheyLackToTheLikeliest) {
+TEST(LabelDecoding, EvidenceIsWhatAClassLacksToTheLikeliest) {
   // Two channels mean slot lines: the better one counts.
   const std::vector<SemanticClass> classes{SemanticClass::kFloor, SemanticClass::kSlotLine,
-                                           SemanticClass::kSlotLine};
-  const std::array<int, 4> shape{1, 3, 1, 4};
+                                           SemanticClass::kSlotLine, SemanticClass::kArrow};
+  const std::array<int, 4> shape{1, 4, 1, 4};
   cv::Mat logits(4, shape.data(), CV_32F);
-  const std::array<std::array<float, 4>, 3> values = {
-      {{2.0F, 5.0F, 0.0F, 30.0F}, {1.0F, 1.0F, 3.0F, 0.0F}, {0.0F, 3.0F, -1.0F, 0.0F}}};
-  for (int c = 0; c < 3; ++c) {
+  const std::array<std::array<float, 4>, 4> values = {{{2.0F, 5.0F, 0.0F, 30.0F},
+                                                       {1.0F, 1.0F, 3.0F, 0.0F},
+                                                       {0.0F, 3.0F, -1.0F, 0.0F},
+                                                       {-1.0F, 4.0F, 2.0F, 25.0F}}};
+  for (int c = 0; c < 4; ++c) {
     std::copy_n(values[static_cast<std::size_t>(c)].begin(), 4, logits.ptr<float>(0, c));
   }
-  cv::Mat labels;
-  cv::Mat confidence;
-  cv::Mat slot_line;
-  decodeLogits(logits, classes, cv::Size(4, 1), labels, confidence, slot_line);
-  const std::array<int, 4> expected{230, 205, 255, 0};
-  for (int i = 0; i < 4; ++i) EXPECT_EQ(slot_line.data[i], expected[static_cast<std::size_t>(i)]);
+  const DecodedLabels decoded = decodeLogits(logits, classes, cv::Size(4, 1));
+  const std::array<int, 4> lines{230, 205, 255, 0};
+  const std::array<int, 4> paint{230, 230, 255, 130};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(decoded.slot_line.data[i], lines[i]) << i;
+    EXPECT_EQ(decoded.paint.data[i], paint[i]) << i;
+  }
 }
 
 TEST(LabelDecoding, UnknownMayBeLeftOut) {
@@ -245,15 +245,12 @@ TEST(LabelDecoding, UnknownMayBeLeftOut) {
       *logits.ptr<float>(0, c) = values[static_cast<std::size_t>(c / per_class)];
     }
     const cv::Size size = per_class == 1 ? cv::Size(1, 1) : cv::Size(2, 2);
-    cv::Mat labels;
-    cv::Mat confidence;
-    cv::Mat slot_line;
-    decodeLogits(logits, classes, size, labels, confidence, slot_line);
-    EXPECT_EQ(labels.data[0], static_cast<int>(SemanticClass::kUnknown));
-    decodeLogits(logits, classes, size, labels, confidence, slot_line, true);
-    for (std::size_t i = 0; i < labels.total(); ++i) {
-      EXPECT_EQ(labels.data[i], static_cast<int>(SemanticClass::kWall));
-      EXPECT_NEAR(confidence.data[i], 255.0 / (1.0 + std::exp(-1.0)), 1.1);
+    EXPECT_EQ(decodeLogits(logits, classes, size).labels.data[0],
+              static_cast<int>(SemanticClass::kUnknown));
+    const DecodedLabels decoded = decodeLogits(logits, classes, size, true);
+    for (std::size_t i = 0; i < decoded.labels.total(); ++i) {
+      EXPECT_EQ(decoded.labels.data[i], static_cast<int>(SemanticClass::kWall));
+      EXPECT_NEAR(decoded.confidence.data[i], 255.0 / (1.0 + std::exp(-1.0)), 1.1);
     }
   }
 }

@@ -89,7 +89,7 @@ double openEndOf(double doubt) {
     const Vector2d p = g.toPixel(Vector2d(2.0, y));
     floor.labels.slot_line.at<std::uint8_t>(static_cast<int>(std::floor(p.y() + 0.5)),
                                             static_cast<int>(std::floor(p.x() + 0.5))) =
-        static_cast<std::uint8_t>(255.0 - doubt * kSlotLinePerLogOdds);
+        static_cast<std::uint8_t>(255.0 - doubt * kEvidencePerLogOdds);
   }
   double y = -10.0;
   for (const SlotMark& mark : findSlotMarks(floor.bev.image, LabelProbe(floor.labels),

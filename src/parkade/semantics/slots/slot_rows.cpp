@@ -79,7 +79,7 @@ class RowScan {
       ++n;
     }
     if (n * kAlong < least) return std::nullopt;
-    return Mean{(static_cast<double>(sum) / n - 255.0) / kSlotLinePerLogOdds, n * kAlong};
+    return Mean{(static_cast<double>(sum) / n - 255.0) / kEvidencePerLogOdds, n * kAlong};
   }
 
   // docs/math/slots.md, equation (3).

@@ -22,7 +22,7 @@ PaintedFloor wornRow(const Row& row, const PaintedFloor& worn, double log_odds) 
   first.paint(floor);
   cv::Mat& evidence = floor.labels.slot_line;
   evidence = cv::Mat(floor.labels.labels.size(), CV_8UC1, cv::Scalar(0.0));
-  evidence.setTo(255.0 - kSlotLinePerLogOdds * log_odds, worn.labels.labels == kSlotLineLabel);
+  evidence.setTo(255.0 - kEvidencePerLogOdds * log_odds, worn.labels.labels == kSlotLineLabel);
   evidence.setTo(255.0, floor.labels.labels == kSlotLineLabel);
   return floor;
 }
