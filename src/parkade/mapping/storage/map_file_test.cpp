@@ -14,7 +14,9 @@
 #include <string>
 #include <thread>
 
+#include "parkade/core/random.hpp"
 #include "parkade/mapping/map_test_support.hpp"
+#include "parkade/mapping/storage/map_rows.hpp"
 #include "parkade/mapping/storage/sqlite.hpp"
 
 namespace parkade {
@@ -89,6 +91,26 @@ TEST_F(MapFileTest, LaterSavesWriteChangesAndRemovals) {
   ASSERT_TRUE(loaded) << loaded.error().message;
   expectSame(map, *loaded);
   EXPECT_TRUE(loaded->grid.tiles(GridLayer::kDynamic).empty());
+}
+
+TEST_F(MapFileTest, TilesTakeLittleMoreThanTheyHold) {
+  // Worn lines: tiles of some 1.5 KB, as those of real maps.
+  ParkingMap map;
+  Random random(11);
+  constexpr int kTiles = 20;
+  for (int x = 0; x < kTiles * LayeredGrid::kTileCells; ++x) {
+    for (int y = 0; y < kTiles * LayeredGrid::kTileCells; y += 3) {
+      map.grid.set(GridLayer::kParkingLines, {x, y}, SemanticClass::kSlotLine,
+                   static_cast<float>(random.uniform(0.5, 6.0)));
+    }
+  }
+  std::size_t held = 0;
+  for (const auto& [at, tile] : map.grid.tiles(GridLayer::kParkingLines)) {
+    held += packTile(tile).size();
+  }
+  save(map);
+  EXPECT_GT(held, 1000U * kTiles * kTiles);
+  EXPECT_LT(std::filesystem::file_size(path_), held + held / 2);
 }
 
 TEST_F(MapFileTest, ForeignAndMissingFilesAreNamed) {
