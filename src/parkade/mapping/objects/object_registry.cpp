@@ -194,6 +194,10 @@ bool ObjectRegistry::exists(const Track& track) const {
     return false;
   }
   if (track.semantic_class == SemanticClass::kZoneMarker && isPhantom(track)) return false;
+  // A limit without its number tells nothing; most of these are a zone marker's patch, misread.
+  if (track.semantic_class == SemanticClass::kSpeedLimitSign && track.texts.best().empty()) {
+    return false;
+  }
   if (viewed_ && track.isSign()) {
     const ViewExistenceOptions& o = options_.sign_views;
     if (track.in_views.hits < o.min_hits || o.logOdds(track.in_views) <= 0.0) {

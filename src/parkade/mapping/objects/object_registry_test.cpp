@@ -81,6 +81,17 @@ TEST(ObjectRegistry, OfTwoSignsThatHangNoFartherApartThanOneIsOffOneIsTold) {
   EXPECT_NEAR(objects[1].position.y(), 3.5, 1e-6);
 }
 
+TEST(ObjectRegistry, ALimitIsToldWithItsNumber) {
+  const auto told = [](SemanticClass sign, const std::string& text) {
+    ObjectRegistry registry({});
+    registry.update({observed(sign, {5.0, 1.0, 2.2}, text)}, SE2(), 0.0, 0);
+    return registry.objects().size();
+  };
+  EXPECT_EQ(told(SemanticClass::kSpeedLimitSign, "10"), 1U);
+  EXPECT_EQ(told(SemanticClass::kSpeedLimitSign, ""), 0U);
+  EXPECT_EQ(told(SemanticClass::kGuideSign, ""), 1U);
+}
+
 TEST(ObjectRegistry, AMarkerThatWasPassedIsMeasuredAgainOrStandsOnAPillar) {
   const ObjectObservation marker = observed(SemanticClass::kZoneMarker, {12.0, 3.0, 1.6}, "B1");
   const ObjectObservation pillar = observed(SemanticClass::kPillar, {12.4, 3.0, 0.0});
