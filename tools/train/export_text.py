@@ -16,7 +16,7 @@ import torch
 from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from export import compare, inline_constants, parse_arguments, replacing  # noqa: E402
+from export import compare, inline_constants, parse_arguments, replacing, rounded  # noqa: E402
 from text_network import ALPHABET, HEIGHT, MEAN, SCALE, WIDTH, TextNetwork, name_of  # noqa: E402
 
 
@@ -57,7 +57,7 @@ def main():
     weights = torch.load(a.state, map_location="cpu")["average"]
     network = TextNetwork(name_of(weights))
     network.load_state_dict(weights)
-    network = fold(network.eval())
+    network = rounded(fold(network.eval()))
     model = a.out + ".onnx"
     with replacing(model, a.out + ".yaml") as (new_model, new_description):
         export(network, new_model)
