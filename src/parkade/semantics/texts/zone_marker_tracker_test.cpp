@@ -188,6 +188,22 @@ TEST(TextEvidence, ViewsOutvoteAWrongOne) {
   EXPECT_GT(evidence.best().probability, 0.99);
 }
 
+// Dark, far faces: readings of all kinds, none of which is likely, "1" oftener than any other.
+TEST(TextEvidence, NoiseThatLooksLikeAStrokeIsNoText) {
+  TextEvidence evidence;
+  for (int k = 0; k < 20; ++k) {
+    evidence.add({{"1", 0.03}, {k % 2 == 0 ? "7" : "12", 0.02}, {"", 0.01}});
+  }
+  EXPECT_LT(evidence.best().probability, 0.9) << evidence.best().text;
+  for (int k = 0; k < 3; ++k) evidence.add({{"B04", 0.4}, {"1", 0.03}});
+  EXPECT_EQ(evidence.best().text, "B04");
+  EXPECT_GT(evidence.best().probability, 0.9);
+  TextEvidence sure;
+  for (int k = 0; k < 3; ++k) sure.add({{"1", 0.9}});
+  EXPECT_EQ(sure.best().text, "1");
+  EXPECT_GT(sure.best().probability, 0.95);
+}
+
 TEST(TextFormat, OtherMarkersTellHowOneIsMadeUp) {
   EXPECT_EQ(TextFormat::patternOf("B12"), "A0");
   EXPECT_EQ(TextFormat::patternOf("C-3"), "A-0");
