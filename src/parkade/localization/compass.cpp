@@ -8,16 +8,9 @@
 
 #include "parkade/core/units.hpp"
 #include "parkade/geometry/so3.hpp"
+#include "parkade/localization/quarter_turn.hpp"
 
 namespace parkade {
-namespace {
-
-// Into (-45, 45] degrees.
-double wrapQuarter(double angle) {
-  return angle - 0.5 * M_PI * std::round(angle / (0.5 * M_PI));
-}
-
-}  // namespace
 
 std::vector<Compass::Line> Compass::linesOf(const SemanticFrame& frame) const {
   std::vector<Line> lines;

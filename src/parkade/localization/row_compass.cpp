@@ -7,6 +7,7 @@
 
 #include "parkade/core/median.hpp"
 #include "parkade/core/units.hpp"
+#include "parkade/localization/quarter_turn.hpp"
 
 namespace parkade {
 namespace {
@@ -18,6 +19,8 @@ constexpr double kReachOfKernel = 3.0;
 constexpr double kPointSpacing = 1.0;  // m, along a line
 constexpr double kView = 20.0;         // m, ahead and behind together, that pictures show at most
 constexpr double kStep = 0.02 * kDegree;
+// Of a direction that the next reading is compared with.
+constexpr double kLeastContrast = 1.3;
 
 }  // namespace
 
@@ -95,13 +98,28 @@ std::optional<RowReading> RowCompass::read(double expected_direction) {
   // What lies along any direction is chance.
   const double chance = median(supports);
   const double excess = *best - chance;
-  if (excess < options_.min_excess || *best < options_.min_contrast * chance) return std::nullopt;
+  if (excess < options_.min_excess || *best < kLeastContrast * chance) return std::nullopt;
   // The top of the parabola through the best and its neighbours.
   const double bend = best[-1] - 2.0 * best[0] + best[1];
   const double beside = bend < 0.0 ? 0.5 * (best[-1] - best[1]) / bend : 0.0;
   const double turn = (static_cast<double>(best - supports.begin()) - half + beside) * kStep;
+  const double direction = expected_direction + turn;
+  const double off = offBefore(direction);
+  if (*best < options_.min_contrast * chance) return std::nullopt;
   const double sigma = options_.sigma_deg * kDegree * (1.0 + options_.doubling_excess / excess);
-  return RowReading{expected_direction + turn, sigma};
+  return RowReading{direction, std::hypot(sigma, off)};
+}
+
+double RowCompass::offBefore(double direction) {
+  constexpr double kUnknown = 0.05 * kDegree;
+  constexpr double kLatest = 1.6;  // spacings
+  const double now = seen_.back().travelled_m;
+  double off = kUnknown;
+  if (before_ && now - before_->travelled_m < kLatest * options_.spacing_m) {
+    off = wrapQuarter(direction - before_->direction);
+  }
+  before_ = Found{now, direction};
+  return off;
 }
 
 }  // namespace parkade

@@ -22,7 +22,7 @@ struct RowCompassOptions {
   double search_deg = 0.8;
   double min_excess = 80.0;
   double min_contrast = 2.0;
-  double sigma_deg = 0.04;
+  double sigma_deg = 0.032;
   double doubling_excess = 300.0;
 
   void visit(OptionVisitor& v) {
@@ -43,8 +43,8 @@ struct RowCompassOptions {
     v.field("min_contrast", min_contrast, "ratio",
             "Pairs along its direction that a reading needs for one along any other.", 1.0, 100.0);
     v.field("sigma_deg", sigma_deg, "deg",
-            "Error of one reading from many points; neighbours share most of their lines, so more "
-            "than its scatter.",
+            "Error of one reading from many points; what it differs by from the one before, which "
+            "shares most of its lines, is added.",
             0.01, 10.0);
     v.field(
         "doubling_excess", doubling_excess, "count",
@@ -72,12 +72,16 @@ class RowCompass {
   /// Enters a frame's lines, seen where the odometry says (its frame must be smooth over the
   /// window; forget() where it was not), at this way travelled, m.
   void add(const SemanticFrame& frame, const SE2& T_odom_vehicle, double travelled_m);
-  void forget() { seen_.clear(); }
+  void forget() {
+    seen_.clear();
+    before_.reset();
+  }
 
   /// The direction in the odometry's frame (rad, modulo 90 degrees, nearest to the expected one)
   /// that rows of the last metres run along or square to. Nothing where little more lies along one
   /// direction than along any, where the best direction is at the search's edge, and before
-  /// spacing_m since the last reading.
+  /// spacing_m since the last reading. Neighbours see nearly the same lines: a reading is as unsure
+  /// as it differs from the one before.
   std::optional<RowReading> read(double expected_direction);
 
  private:
@@ -95,8 +99,17 @@ class RowCompass {
   [[nodiscard]] double support(const std::vector<AlongAcross>& pairs, double turn) const;
 
   RowCompassOptions options_;
+  /// rad; how far a direction lies off the one found before, on nearly the same lines.
+  double offBefore(double direction);
+
+  struct Found {
+    double travelled_m;
+    double direction;  // odometry's frame
+  };
+
   std::deque<Seen> seen_;
   double last_read_m_ = -1e9;
+  std::optional<Found> before_;
 };
 
 }  // namespace parkade

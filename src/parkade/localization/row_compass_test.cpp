@@ -4,8 +4,10 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "parkade/core/random.hpp"
 #include "parkade/core/units.hpp"
@@ -78,6 +80,32 @@ TEST(RowCompass, SaysNothingWhereNothingLiesInRows) {
   Rows short_lines;
   short_lines.length = 0.05;
   EXPECT_FALSE(short_lines.drive(turned, 30.0, 3.0 * kDegree, 0.0)) << "beyond what is searched";
+}
+
+TEST(RowCompass, ReadingsThatDifferFromTheOneBeforeAreUnsure) {
+  for (const double bend_deg : {0.0, 0.4}) {
+    RowCompass compass({});
+    Rows rows;
+    std::vector<RowReading> readings;
+    for (double x = 0.0; x <= 50.0; x += 1.0) {
+      // As a line beside the car whose distance is measured ever more wrongly.
+      const double turn = (x < 25.0 ? 0.0 : bend_deg) * kDegree;
+      compass.add(rows.seenFrom(x),
+                  SE2(0.0, {25.0, 0.0}) * SE2(turn, {0.0, 0.0}) * SE2(0.0, {x - 25.0, 0.0}), x);
+      if (const auto found = compass.read(0.0)) readings.push_back(*found);
+    }
+    ASSERT_GE(readings.size(), 3U);
+    double worst = 0.0;
+    for (std::size_t i = 1; i < readings.size(); ++i) {
+      worst = std::max(worst, readings[i].sigma);
+      EXPECT_GE(readings[i].sigma, std::abs(readings[i].direction - readings[i - 1].direction));
+    }
+    if (bend_deg == 0.0) {
+      EXPECT_LT(worst, 0.06 * kDegree);
+    } else {
+      EXPECT_GT(worst, 0.08 * kDegree);
+    }
+  }
 }
 
 TEST(RowCompass, ReadsOncePerSpacingAndForgets) {

@@ -101,8 +101,8 @@ class TextEvidence {
   static constexpr double kNegligible = 0.01;
   static constexpr std::size_t kFaces = 40;  // the latest that are kept
 
-  /// Its probability over what a reading that knows nothing gives to texts of that length, 1 of three
-  /// characters and more. Noise and edges look like "1" far oftener than like "B12".
+  /// Its probability over what a reading that knows nothing gives to texts of that length, 1 of
+  /// three characters and more. Noise and edges look like "1" far oftener than like "B12".
   static double weigh(const TextReading& reading) {
     constexpr double kOne = 0.04;
     constexpr double kTwo = 0.25;
