@@ -11,6 +11,7 @@
 #include <string>
 
 #include "parkade/sim/world/polygon.hpp"
+#include "parkade/sim/world/structure.hpp"
 #include "parkade/sim/world/style.hpp"
 
 namespace parkade::sim {
@@ -124,6 +125,22 @@ TEST(GenerateTest, PaintShowsOnEveryFloor) {
       }
     }
   }
+}
+
+TEST(GenerateTest, ZoneTextsFitOnTheirPillars) {
+  int round = 0;
+  for (int seed = 0; seed < 50; ++seed) {
+    const Garage garage = make("random", seed);
+    for (const Sign& sign : garage.signs) {
+      if (sign.semantic_class != SemanticClass::kZoneMarker) continue;
+      const auto pillar = std::find_if(garage.pillars.begin(), garage.pillars.end(),
+                                       [&](const Pillar& p) { return p.zone_text == sign.text; });
+      ASSERT_NE(pillar, garage.pillars.end());
+      EXPECT_LE(sign.width - 0.06, 0.87 * zonePlateWidth(*pillar)) << sign.text;
+      round += pillar->round ? 1 : 0;
+    }
+  }
+  EXPECT_GT(round, 100);
 }
 
 TEST(GenerateTest, MarkingsLieInsideAndSignsAreUnique) {

@@ -68,7 +68,7 @@ class PillarBuilder {
     }
     if (sign == nullptr) return palette_.add("zone", SemanticClass::kZoneMarker, back, 0.45F);
     // The face's middle may lie off the text's where a guard cuts the band.
-    const double face = pillar.round ? 0.8 * pillar.size.x() : pillar.size.x();
+    const double face = zonePlateWidth(pillar);
     PlateStyle plate{back, ink, style_.text_weight};
     const double off = style_.zone_text_center - (from + 0.5 * height);
     const Texture texture =
@@ -152,12 +152,13 @@ class PillarBuilder {
     ring(pillar, z0, z1, plain);
     // Flat plates before the curve.
     Pillar plate = pillar;
-    plate.size *= 0.8;
+    plate.size = Eigen::Vector2d::Constant(zonePlateWidth(pillar));
     for (int k = 0; k < 4; ++k) {
       if (!has_text(k)) continue;
       const double heading = k * M_PI_2;
       const Eigen::Vector2d normal(-std::cos(heading), -std::sin(heading));
-      plate.center = pillar.center + (0.1 * pillar.size.x() + 0.025) * normal;
+      const double behind = 0.5 * (pillar.size.x() - plate.size.x());
+      plate.center = pillar.center + (behind + 0.025) * normal;
       face(plate, k, z0, z1, text);
     }
   }

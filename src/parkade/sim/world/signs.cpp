@@ -8,6 +8,7 @@
 #include "parkade/sim/world/generate.hpp"
 #include "parkade/sim/world/paint.hpp"
 #include "parkade/sim/world/stroke_font.hpp"
+#include "parkade/sim/world/structure.hpp"
 
 namespace parkade::sim {
 namespace {
@@ -63,7 +64,7 @@ void addZoneMarkers(const Layout& layout, const GarageStyle& style, Random rando
     if (!random.chance(style.zone_share)) continue;
     pillar.zone_text = zoneName(style, indexOf(layout.pillar_y, pillar.center.y()),
                                 indexOf(layout.pillar_x, pillar.center.x()));
-    const double room = 0.86 * pillar.size.x();
+    const double room = 0.86 * zonePlateWidth(pillar);
     double height = style.zone_text_height;
     const double full = textWidth(pillar.zone_text, height, style.text_weight);
     height *= std::min(1.0, room / full);

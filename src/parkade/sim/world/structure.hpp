@@ -21,6 +21,12 @@ void addShell(const Garage& garage, const GarageStyle& style, Random random, Pal
 void addPillars(const Garage& garage, const GarageStyle& style, Palette& palette,
                 MeshBuilder& mesh);
 
+/// What a zone's text has to fit on, m: a face of the pillar, or the flat plate before a round one.
+inline double zonePlateWidth(const Pillar& pillar) {
+  constexpr double kPlate = 0.8;
+  return pillar.round ? kPlate * pillar.size.x() : pillar.size.x();
+}
+
 /// Hanging guide signs and speed-limit plates.
 void addSigns(const Garage& garage, const GarageStyle& style, Palette& palette, MeshBuilder& mesh);
 
