@@ -14,6 +14,11 @@ inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
+/// Into [-45, 45] degrees: what two directions differ by where quarter turns do not count.
+inline double wrapQuarter(double angle) {
+  return angle - std::round(angle / M_PI_2) * M_PI_2;
+}
+
 /// Whether p lies in a convex quadrilateral of either orientation.
 inline bool contains(const std::array<Eigen::Vector2d, 4>& quad, const Eigen::Vector2d& p) {
   int positive = 0;

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "parkade/core/units.hpp"
+#include "parkade/geometry/planar.hpp"
 #include "parkade/geometry/so3.hpp"
-#include "parkade/localization/quarter_turn.hpp"
 
 namespace parkade {
 

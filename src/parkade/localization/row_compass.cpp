@@ -7,7 +7,7 @@
 
 #include "parkade/core/median.hpp"
 #include "parkade/core/units.hpp"
-#include "parkade/localization/quarter_turn.hpp"
+#include "parkade/geometry/planar.hpp"
 
 namespace parkade {
 namespace {
@@ -98,7 +98,8 @@ std::optional<RowReading> RowCompass::read(double expected_direction) {
   // What lies along any direction is chance.
   const double chance = median(supports);
   const double excess = *best - chance;
-  if (excess < options_.min_excess || *best < kLeastContrast * chance) return std::nullopt;
+  const double least = std::min(kLeastContrast, options_.min_contrast);
+  if (excess < options_.min_excess || *best < least * chance) return std::nullopt;
   // The top of the parabola through the best and its neighbours.
   const double bend = best[-1] - 2.0 * best[0] + best[1];
   const double beside = bend < 0.0 ? 0.5 * (best[-1] - best[1]) / bend : 0.0;

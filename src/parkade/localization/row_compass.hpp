@@ -94,19 +94,18 @@ class RowCompass {
     double travelled_m;
     std::vector<Eigen::Vector2d> points;  // odometry's frame
   };
-  /// The ways between any two points that may lie on one row along about this direction.
-  void appendPairs(double direction, std::vector<AlongAcross>& pairs) const;
-  [[nodiscard]] double support(const std::vector<AlongAcross>& pairs, double turn) const;
-
-  RowCompassOptions options_;
-  /// rad; how far a direction lies off the one found before, on nearly the same lines.
-  double offBefore(double direction);
-
   struct Found {
     double travelled_m;
     double direction;  // odometry's frame
   };
+  /// The ways between any two points that may lie on one row along about this direction.
+  void appendPairs(double direction, std::vector<AlongAcross>& pairs) const;
+  [[nodiscard]] double support(const std::vector<AlongAcross>& pairs, double turn) const;
+  /// rad; how far a direction lies off the one found before, on nearly the same lines. The next one
+  /// is compared with it.
+  double offBefore(double direction);
 
+  RowCompassOptions options_;
   std::deque<Seen> seen_;
   double last_read_m_ = -1e9;
   std::optional<Found> before_;

@@ -30,12 +30,12 @@ class TextEvidence {
       if (reading.text.empty()) {
         face.none += reading.probability;
       } else if (reading.probability > kNegligible) {
-        face.readings.push_back(reading);
+        face.readings.push_back({reading.text, weigh(reading)});
       }
     }
     if (face.readings.empty()) return;
     for (const TextReading& reading : face.readings) {
-      whole_[reading.text] += ratio(kWhole * weigh(reading), face);
+      whole_[reading.text] += ratio(kWhole * reading.probability, face);
     }
     faces_.push_back(std::move(face));
     if (faces_.size() > kFaces) faces_.pop_front();
@@ -91,8 +91,8 @@ class TextEvidence {
 
  private:
   struct Face {
-    std::vector<TextReading> readings;
-    double none = 0.0;  ///< probability that it is plain
+    std::vector<TextReading> readings;  ///< weighed
+    double none = 0.0;                  ///< probability that it is plain
   };
   static constexpr double kWhole = 0.7;     // share of readings that are of the whole text
   static constexpr double kPart = 0.15;     // of a part of it
@@ -118,9 +118,9 @@ class TextEvidence {
       double probability = 0.0;
       for (const TextReading& reading : face.readings) {
         if (reading.text == text) {
-          probability += kWhole * weigh(reading);
+          probability += kWhole * reading.probability;
         } else if (text.find(reading.text) != std::string::npos) {
-          probability += kPart * weigh(reading);
+          probability += kPart * reading.probability;
         }
       }
       sum += ratio(probability, face);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "parkade/geometry/planar.hpp"
+
 namespace parkade::slot_rows {
 namespace {
 
@@ -77,8 +79,7 @@ MapSlot turned(const MapSlot& slot, double axis) {
 }  // namespace
 
 double turnFromAxes(const Vector2d& v, double axis) {
-  const double angle = std::atan2(v.y(), v.x()) - axis;
-  return angle - std::round(angle / M_PI_2) * M_PI_2;
+  return wrapQuarter(std::atan2(v.y(), v.x()) - axis);
 }
 
 Vector2d axisAlong(const Vector2d& v, double axis) {

@@ -71,8 +71,8 @@ class PillarBuilder {
     const double face = zonePlateWidth(pillar);
     PlateStyle plate{back, ink, style_.text_weight};
     const double off = style_.zone_text_center - (from + 0.5 * height);
-    const Texture texture =
-        plateTexture(face, height, pillar.zone_text, sign->height - 0.06, plate, 320.0, {0.0, off});
+    const Texture texture = plateTexture(face, height, pillar.zone_text,
+                                         sign->height - kZoneTextMargin, plate, 320.0, {0.0, off});
     return palette_.add("zone " + pillar.zone_text, SemanticClass::kZoneMarker,
                         Eigen::Vector3f::Ones(), 0.45F, 0.04F, palette_.addTexture(texture));
   }

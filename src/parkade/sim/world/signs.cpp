@@ -77,7 +77,7 @@ void addZoneMarkers(const Layout& layout, const GarageStyle& style, Random rando
       const double out = 0.5 * pillar.size.x() + (pillar.round ? 0.03 : 0.004);
       const Eigen::Vector2d p = pillar.center + out * normal;
       addSign(garage, SemanticClass::kZoneMarker, signPose({p.x(), p.y(), z}, heading),
-              width + 0.06, height + 0.06, pillar.zone_text);
+              width + kZoneTextMargin, height + kZoneTextMargin, pillar.zone_text);
     }
   }
 }

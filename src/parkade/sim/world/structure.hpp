@@ -27,6 +27,9 @@ inline double zonePlateWidth(const Pillar& pillar) {
   return pillar.round ? kPlate * pillar.size.x() : pillar.size.x();
 }
 
+/// By how much a zone marker, as a sign, is wider and higher than its text, m.
+constexpr double kZoneTextMargin = 0.06;
+
 /// Hanging guide signs and speed-limit plates.
 void addSigns(const Garage& garage, const GarageStyle& style, Palette& palette, MeshBuilder& mesh);
 
