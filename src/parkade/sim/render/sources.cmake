@@ -38,4 +38,5 @@ set(RENDER_TESTS
     render/parallel_test.cpp
     render/reflection_test.cpp
     render/renderer_test.cpp
-    render/sensor_model_test.cpp)
+    render/sensor_model_test.cpp
+    render/tracer_test.cpp)

@@ -44,7 +44,7 @@ void TileTracer::trace(int tile, TileSamples& out) const {
           R_(1, 0) * packet.x[k] + R_(1, 1) * packet.y[k] + R_(1, 2) * packet.z[k];
       rays.rays.ray.dir_z[k] =
           R_(2, 0) * packet.x[k] + R_(2, 1) * packet.y[k] + R_(2, 2) * packet.z[k];
-      rays.rays.ray.tfar[k] = kFar;
+      if (rays.valid[k] != 0) rays.rays.ray.tfar[k] = kFar;
     }
     if (packet.valid != 0U) {
       traceBoth(*setup_.tracer, moving, rays, true);

@@ -3,12 +3,23 @@
 #include "parkade/sim/render/tracer.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "parkade/core/check.hpp"
 
 namespace parkade::sim {
 void RayPacket::clear(unsigned mask) {
   std::fill_n(valid, kPacket, 0);
+  // Where the processor has no instructions for sixteen lanes, Embree looks at the limits, and not
+  // at valid alone: lanes that are off must hold rays that are well formed and end before they
+  // begin.
+  std::fill_n(rays.ray.org_x, kPacket, 0.0F);
+  std::fill_n(rays.ray.org_y, kPacket, 0.0F);
+  std::fill_n(rays.ray.org_z, kPacket, 0.0F);
+  std::fill_n(rays.ray.dir_x, kPacket, 0.0F);
+  std::fill_n(rays.ray.dir_y, kPacket, 0.0F);
+  std::fill_n(rays.ray.dir_z, kPacket, 1.0F);
+  std::fill_n(rays.ray.tfar, kPacket, -std::numeric_limits<float>::infinity());
   std::fill_n(rays.ray.tnear, kPacket, kNear);
   std::fill_n(rays.ray.time, kPacket, 0.0F);
   std::fill_n(rays.ray.mask, kPacket, mask);

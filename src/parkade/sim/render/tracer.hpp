@@ -23,7 +23,8 @@ struct RayPacket {
   alignas(64) int valid[kPacket];
   RTCRayHit16 rays;
 
-  /// All lanes off, with the mask and the near limit that most rays use.
+  /// All lanes off, with the mask and the near limit that most rays use, and with rays that are
+  /// well formed but end before they begin.
   void clear(unsigned mask);
   void set(int lane, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
            float far_limit);
