@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/mapping/synthetic_plan.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -62,8 +64,7 @@ Plan makePlan(int aisles, double length, double occupancy, std::uint64_t seed) {
       // A pillar on every third line, set back from the aisle, with its zone's text.
       const Vector2d at(x0 + 3.0 * i * kSlotWidth, y + kHalfAisle + 1.0);
       plan.objects.push_back({SemanticClass::kPillar, {at.x(), at.y(), 0.0}, 0.0, "", {0.4, 0.4}});
-      const std::string text =
-          std::string(1, static_cast<char>('A' + k)) + std::to_string(i / 2 + 1);
+      const std::string text = fmt::format("{}{}", static_cast<char>('A' + k), i / 2 + 1);
       plan.objects.push_back(
           {SemanticClass::kZoneMarker, {at.x(), at.y() - 0.21, 1.6}, -M_PI / 2, text, {0.0, 0.0}});
     }

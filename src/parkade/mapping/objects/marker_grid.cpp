@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/mapping/objects/marker_grid.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -12,6 +14,7 @@
 
 #include "parkade/core/units.hpp"
 #include "parkade/geometry/planar.hpp"
+#include "parkade/mapping/objects/marker_counts.hpp"
 
 namespace parkade {
 namespace {
@@ -105,6 +108,72 @@ std::optional<double> directionOf(const std::vector<Marker>& markers, Part share
   return 0.5 * (twice < 0.0 ? twice + 2.0 * M_PI : twice);
 }
 
+// How far a marker lies off its line, m.
+constexpr double kAside = 0.6;
+
+/// Markers side by side on one line, named ones, and the digits that most of them share.
+struct DigitLine {
+  std::vector<Marker*> markers;
+  std::string digits;
+  double across = 0.0;  // m
+};
+
+// Lines whose markers agree on a number, two of them at least.
+std::vector<DigitLine> digitLines(std::vector<Marker>& markers, const Vector2d& along) {
+  constexpr double kShare = 0.7;
+  constexpr std::size_t kLongest = 4;  // digits
+  std::vector<Marker*> named;
+  for (Marker& marker : markers) {
+    if (marker.name) named.push_back(&marker);
+  }
+  const auto across = [&](const Marker* marker) { return cross(along, marker->p); };
+  std::stable_sort(named.begin(), named.end(),
+                   [&](const Marker* a, const Marker* b) { return across(a) < across(b); });
+  std::vector<DigitLine> lines;
+  for (Marker* marker : named) {
+    if (lines.empty() || across(marker) - across(lines.back().markers.back()) > kAside) {
+      lines.emplace_back();
+    }
+    lines.back().markers.push_back(marker);
+  }
+  for (DigitLine& line : lines) {
+    std::ptrdiff_t most = 0;
+    for (const Marker* one : line.markers) {
+      const auto count = std::count_if(
+          line.markers.begin(), line.markers.end(),
+          [&](const Marker* other) { return other->name->digits == one->name->digits; });
+      if (count <= most) continue;
+      most = count;
+      line.digits = one->name->digits;
+      line.across = across(one);
+    }
+    const auto all = static_cast<double>(line.markers.size());
+    if (most < 2 || static_cast<double>(most) < kShare * all) line.digits.clear();
+  }
+  std::erase_if(lines, [](const DigitLine& line) {
+    return line.digits.empty() || line.digits.size() > kLongest;
+  });
+  return lines;
+}
+
+// A hidden stroke, or worn paint, may make all markers of a line be misread alike.
+void mendLines(std::vector<Marker>& markers, double digits_run) {
+  std::vector<DigitLine> lines =
+      digitLines(markers, Vector2d(std::cos(digits_run), std::sin(digits_run)));
+  std::vector<CountedLine> counted;
+  for (const DigitLine& line : lines) counted.push_back({line.across, std::stoi(line.digits)});
+  const std::vector<std::optional<int>> mended = mendedCounts(counted);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (!mended[i]) continue;
+    const bool padded = lines[i].digits.front() == '0';
+    const std::string digits =
+        fmt::format("{:0{}}", *mended[i], padded ? lines[i].digits.size() : 1);
+    for (Marker* marker : lines[i].markers) {
+      if (marker->name->digits == lines[i].digits) marker->name->digits = digits;
+    }
+  }
+}
+
 class NameGrid {
  public:
   NameGrid(const std::vector<Marker>& markers, double letters, double digits)
@@ -139,8 +208,7 @@ class NameGrid {
   // What the others next to a marker on its line agree on, two of them at least.
   [[nodiscard]] std::optional<std::string> agreed(std::size_t i, const Vector2d& along,
                                                   Part part) const {
-    constexpr double kAside = 0.6;  // m
-    constexpr double kFar = 40.0;   // m
+    constexpr double kFar = 40.0;  // m
     constexpr std::size_t kMost = 4;
     std::vector<std::pair<double, const std::string*>> others;
     for (std::size_t j = 0; j < markers_.size(); ++j) {
@@ -190,7 +258,7 @@ std::vector<Marker> alike(const std::vector<NamedMarker>& named, GridName& usual
 
 void nameByGrid(std::vector<NamedMarker>& named) {
   GridName usual;
-  const std::vector<Marker> markers = alike(named, usual);
+  std::vector<Marker> markers = alike(named, usual);
   const auto letters_run = directionOf(markers, &GridName::letters);
   const auto digits_run = directionOf(markers, &GridName::digits);
   if (!letters_run || !digits_run) return;
@@ -198,6 +266,7 @@ void nameByGrid(std::vector<NamedMarker>& named) {
   if (std::abs(std::abs(*letters_run - *digits_run) - 0.5 * M_PI) > kSquare) return;
   const NameGrid grid(markers, *letters_run, *digits_run);
   if (!grid.holds()) return;
+  mendLines(markers, *digits_run);
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < named.size(); ++i) {
     const auto letters = grid.lettersAt(i);
@@ -206,8 +275,7 @@ void nameByGrid(std::vector<NamedMarker>& named) {
     GridName name = known ? *markers[i].name : usual;
     if (letters) name.letters = *letters;
     if (digits) name.digits = *digits;
-    const bool whole = known ? letters || digits : letters && digits;
-    texts.push_back(whole ? name.text() : named[i].text);
+    texts.push_back(known || (letters && digits) ? name.text() : named[i].text);
   }
   const std::vector<NamedMarker> before = named;
   for (std::size_t i = 0; i < named.size(); ++i) {

@@ -6,6 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
+
+#include "parkade/mapping/objects/marker_counts.hpp"
 
 namespace parkade {
 namespace {
@@ -39,7 +42,7 @@ class MarkerGrid : public testing::Test {
   }
 
   static constexpr int kRows = 4;
-  static constexpr int kColumns = 6;
+  static constexpr int kColumns = 7;
   std::vector<NamedMarker> markers_;
 };
 
@@ -61,6 +64,43 @@ TEST_F(MarkerGrid, NamesWhatWasNotRead) {
   marker(0, 0).text.clear();
   nameByGrid(markers_);
   expectAllRight();
+}
+
+// 11 read as 12 all along a line, which the next one is, too.
+TEST_F(MarkerGrid, MendsALineMisreadAlike) {
+  for (int row = 0; row < kRows; ++row) marker(row, 2).text = name(row, 3);
+  nameByGrid(markers_);
+  expectAllRight();
+}
+
+// At the edge nobody knows which of the two lines is misread, nor whether one was passed unseen.
+TEST_F(MarkerGrid, LinesOfOneNumberAtTheEdgeStay) {
+  for (int row = 0; row < kRows; ++row) marker(row, 0).text = name(row, 1);
+  const std::vector<NamedMarker> before = markers_;
+  nameByGrid(markers_);
+  for (std::size_t i = 0; i < markers_.size(); ++i) EXPECT_EQ(markers_[i].text, before[i].text);
+}
+
+TEST(MarkerCounts, NumbersOutOfStep) {
+  using Mended = std::vector<std::optional<int>>;
+  const auto at = [](std::vector<int> numbers, double spacing) {
+    std::vector<CountedLine> lines;
+    for (const int number : numbers) {
+      lines.push_back({spacing * static_cast<double>(lines.size()), number});
+    }
+    return lines;
+  };
+  const auto no = std::nullopt;
+  EXPECT_EQ(mendedCounts(at({14, 16, 16, 17, 18, 19}, 8.0)), (Mended{no, 15, no, no, no, no}));
+  // Counted the other way, and told in any order.
+  EXPECT_EQ(mendedCounts(at({14, 16, 16, 17, 18, 19}, -8.0)), (Mended{no, 15, no, no, no, no}));
+  // Both 16 and 17 stand between, one line was not seen: nobody knows.
+  EXPECT_EQ(mendedCounts(at({14, 17, 17, 18, 19, 20}, 8.0)), Mended(6));
+  // 23 is out of step, too, but no other line's number: it may begin another zone.
+  EXPECT_EQ(mendedCounts(at({14, 23, 16, 17, 18, 19}, 8.0)), Mended(6));
+  // Numbers that do not count lines.
+  EXPECT_EQ(mendedCounts(at({1, 1, 3, 7, 2, 8}, 8.0)), Mended(6));
+  EXPECT_EQ(mendedCounts({}), Mended{});
 }
 
 TEST_F(MarkerGrid, GivesNoNameTwice) {
