@@ -82,12 +82,27 @@ function(parkade_room NAME)
   endif()
 endfunction()
 
+# With PARKADE_UNITY, the headers that most tests spend their compile time on are compiled once. Tests include
+# what they use all the same.
+add_library(parkade_test_flags INTERFACE)
+target_link_libraries(parkade_test_flags INTERFACE parkade_flags GTest::gmock)
+target_compile_definitions(parkade_test_flags INTERFACE PARKADE_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+function(parkade_test_headers)
+  add_library(parkade_test_headers OBJECT ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/test_headers.cpp)
+  target_link_libraries(parkade_test_headers PRIVATE parkade_test_flags Eigen3::Eigen fmt::fmt opencv_core)
+  target_precompile_headers(parkade_test_headers PRIVATE
+      <gmock/gmock.h> <gtest/gtest.h> <Eigen/Core> <Eigen/Geometry> <fmt/core.h> <opencv2/core.hpp>
+      <filesystem> <fstream> <functional>)
+endfunction()
+
 # parkade_test(NAME SOURCES ... DEPS ... LABEL room): one GoogleTest program, each case one ctest.
 function(parkade_test NAME)
   cmake_parse_arguments(TEST "" "LABEL" "SOURCES;DEPS" ${ARGN})
   add_executable(${NAME} ${TEST_SOURCES})
-  target_link_libraries(${NAME} PRIVATE parkade_flags ${TEST_DEPS} GTest::gmock GTest::gtest_main)
-  target_compile_definitions(${NAME} PRIVATE PARKADE_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  target_link_libraries(${NAME} PRIVATE parkade_test_flags ${TEST_DEPS} GTest::gtest_main)
+  if(PARKADE_UNITY)
+    target_precompile_headers(${NAME} REUSE_FROM parkade_test_headers)
+  endif()
   if(PARKADE_SANITIZE)
     set(LIMIT_S 1500)
   else()
