@@ -84,11 +84,13 @@ void Compass::turnWorld(double angle) {
   for (Line& line : seen_) line.direction += angle;
 }
 
-double CompassScatter::add(double off_odometry) {
+std::optional<double> CompassScatter::add(double off_odometry) {
   constexpr std::size_t kReadings = 15;
+  constexpr std::size_t kLeast = 4;
   constexpr double kPrior = 4.0;   // readings that the usual scatter counts for
   constexpr double kShared = 1.6;  // of the error over the scatter: neighbours see the same lines
   latest_.push_back(off_odometry);
+  if (latest_.size() < kLeast) return std::nullopt;
   if (latest_.size() > kReadings) latest_.pop_front();
   double sum = 0.0;
   double squares = 0.0;

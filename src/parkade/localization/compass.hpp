@@ -85,8 +85,10 @@ class CompassScatter {
   /// usual_sigma: rad, the error of a reading where lines are good; none is told to be less.
   explicit CompassScatter(double usual_sigma) : usual_sigma_(usual_sigma) {}
 
-  /// Enters a reading, less the odometry's heading (rad), and gives its sigma, rad.
-  double add(double off_odometry);
+  /// Enters a reading, less the odometry's heading (rad), and gives its sigma, rad. Nothing for the
+  /// first ones: how much they scatter is not known, and one that errs by a degree told as a good
+  /// one would turn the axes for good.
+  std::optional<double> add(double off_odometry);
   void forget() { latest_.clear(); }
 
  private:

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <optional>
 
 #include "parkade/core/random.hpp"
 #include "parkade/core/units.hpp"
@@ -88,17 +89,30 @@ TEST(CompassScatter, TellsReadingsThatDifferFromEachOther) {
   // Good lines, about half a turn off the odometry.
   for (int i = 0; i < 30; ++i) {
     const double off = wrapAngle(180.0 * kDegree + 0.05 * kDegree * random.normal());
-    EXPECT_DOUBLE_EQ(scatter.add(off), 0.3 * kDegree);
+    const std::optional<double> sigma = scatter.add(off);
+    ASSERT_EQ(sigma.has_value(), i >= 3);
+    if (sigma) {
+      EXPECT_DOUBLE_EQ(*sigma, 0.3 * kDegree);
+    }
   }
   // Worn ones.
   double sigma = 0.0;
   for (int i = 0; i < 15; ++i) {
-    sigma = scatter.add(wrapAngle(180.0 * kDegree + 0.7 * kDegree * random.normal()));
+    sigma = scatter.add(wrapAngle(180.0 * kDegree + 0.7 * kDegree * random.normal())).value();
   }
   EXPECT_GT(sigma, 0.8 * kDegree);
   EXPECT_LT(sigma, 2.0 * kDegree);
   scatter.forget();
-  EXPECT_DOUBLE_EQ(scatter.add(0.0), 0.3 * kDegree);
+  EXPECT_FALSE(scatter.add(0.0));
+}
+
+TEST(CompassScatter, TheFirstThatIsToldKnowsHowMuchReadingsScatter) {
+  CompassScatter scatter(0.23 * kDegree);
+  std::optional<double> first;
+  // The first of a garage with a bare floor.
+  for (const double off_deg : {1.0, -2.0, -0.5, 3.4}) first = scatter.add(off_deg * kDegree);
+  ASSERT_TRUE(first);
+  EXPECT_GT(*first, 2.0 * kDegree);
 }
 
 }  // namespace

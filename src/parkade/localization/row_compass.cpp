@@ -107,8 +107,11 @@ std::optional<RowReading> RowCompass::read(double expected_direction) {
   const double direction = expected_direction + turn;
   const double off = offBefore(direction);
   if (*best < options_.min_contrast * chance) return std::nullopt;
+  // So many neighbours share lines, and with them what they err by: all of them together know what
+  // one does.
+  const double shared = std::max(1.0, options_.window_m / options_.spacing_m);
   const double sigma = options_.sigma_deg * kDegree * (1.0 + options_.doubling_excess / excess);
-  return RowReading{direction, std::hypot(sigma, off)};
+  return RowReading{direction, std::hypot(std::sqrt(shared) * sigma, off)};
 }
 
 double RowCompass::offBefore(double direction) {

@@ -43,8 +43,8 @@ struct RowCompassOptions {
     v.field("min_contrast", min_contrast, "ratio",
             "Pairs along its direction that a reading needs for one along any other.", 1.0, 100.0);
     v.field("sigma_deg", sigma_deg, "deg",
-            "Error of one reading from many points; what it differs by from the one before, which "
-            "shares most of its lines, is added.",
+            "Error of one reading from many points; it counts as many times, squared, as readings "
+            "share a window, and what it differs by from the one before is added.",
             0.01, 10.0);
     v.field(
         "doubling_excess", doubling_excess, "count",
@@ -57,7 +57,7 @@ struct RowCompassOptions {
 /// A direction that rows run along or square to.
 struct RowReading {
   double direction = 0.0;  ///< rad, in the odometry's frame, modulo 90 degrees
-  double sigma = 0.0;      ///< rad
+  double sigma = 0.0;      ///< rad; of readings taken for independent, which neighbours are not
 };
 
 /// Heading from whole rows: ends of slot lines, and points along lines, that were seen over tens of

@@ -101,9 +101,9 @@ TEST(RowCompass, ReadingsThatDifferFromTheOneBeforeAreUnsure) {
       EXPECT_GE(readings[i].sigma, std::abs(readings[i].direction - readings[i - 1].direction));
     }
     if (bend_deg == 0.0) {
-      EXPECT_LT(worst, 0.06 * kDegree);
+      EXPECT_LT(worst, 0.09 * kDegree);
     } else {
-      EXPECT_GT(worst, 0.08 * kDegree);
+      EXPECT_GT(worst, 0.12 * kDegree);
     }
   }
 }

@@ -142,7 +142,8 @@ void FusedMapper::Impl::readCompass(const SemanticFrame& frame, const View& view
   const double learned = frame.rig_turn - axes_rig_turn;
   if (heading) {
     const double read = *heading + learned;
-    turnTo(read, compass_scatter.add(read - in_odometry.angle()), view);
+    const std::optional<double> sigma = compass_scatter.add(read - in_odometry.angle());
+    if (sigma) turnTo(read, *sigma, view);
   }
   const double drift = poseOf(view).angle() - in_odometry.angle();
   if (const std::optional<RowReading> row = rows.read(*axis + axis_shift - drift)) {
