@@ -303,8 +303,8 @@ void addRunCommand(CLI::App& app, int& exit_code) {
   command
       ->add_flag("--real-time", a->real_time,
                  "Take frame sets when they are due by their stamps, as from a car, and pass "
-                 "pictures over where the computer does not keep up: latencies are then those of "
-                 "a live run")
+                 "pictures over where the computer does not keep up, for the map or altogether: "
+                 "latencies are then those of a live run")
       ->group("Work");
   command
       ->add_option("--threads", a->threads,

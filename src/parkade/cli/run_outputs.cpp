@@ -42,6 +42,7 @@ nlohmann::json timingJson(const RunSummary& summary) {
       summary.recorded_s > 0.0 ? summary.processing_s / summary.recorded_s : 0.0;
   json["peak_memory_mb"] = peakMemoryMb();
   json["pictures_passed_over"] = summary.pictures_passed_over;
+  json["frame_sets_passed_over"] = summary.frame_sets_passed_over;
   return json;
 }
 
@@ -214,6 +215,12 @@ std::string timingTable(const RunSummary& summary) {
     text += fmt::format(
         "the computer did not keep up: {} of {} frame sets were passed over by the semantic part\n",
         summary.pictures_passed_over, summary.frame_sets);
+  }
+  if (summary.frame_sets_passed_over > 0) {
+    text += fmt::format(
+        "it lagged behind: {} frame sets were passed over altogether; fewer or smaller pictures, "
+        "or more cores, help\n",
+        summary.frame_sets_passed_over);
   }
   return text;
 }

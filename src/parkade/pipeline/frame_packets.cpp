@@ -19,7 +19,31 @@ std::optional<FramePacket> FramePackets::release() {
   return std::exchange(waiting_, std::nullopt);
 }
 
+bool FramePackets::isLate(const FramePacket& packet) const {
+  constexpr double kLate = 200.0;  // ms
+  return live_ && millisecondsBetween(packet.arrived, BusyTime::Clock::now()) > kLate;
+}
+
 Result<std::optional<FramePacket>> FramePackets::next() {
+  FramePacket passed_over;
+  while (true) {
+    Result<std::optional<FramePacket>> packet = read();
+    if (!packet || !packet->has_value()) return packet;
+    FramePacket& found = **packet;
+    const auto append = [](auto& readings, auto& later) {
+      readings.insert(readings.end(), later.begin(), later.end());
+      later = std::move(readings);
+    };
+    append(passed_over.imu, found.imu);
+    append(passed_over.wheel, found.wheel);
+    found.reading_ms += passed_over.reading_ms;
+    if (!isLate(found)) return packet;
+    ++passed_over_;
+    passed_over = std::move(found);
+  }
+}
+
+Result<std::optional<FramePacket>> FramePackets::read() {
   using Clock = BusyTime::Clock;
   if (next_frames_) begin(*std::exchange(next_frames_, std::nullopt));
   while (!failed_) {

@@ -27,20 +27,29 @@ struct FramePacket {
 /// Reads a source and parts what it gives into packets.
 class FramePackets {
  public:
-  /// arrive(t_ns): called when a frame set has come; gives when it did.
-  FramePackets(SensorSource& source, std::function<BusyTime::Clock::time_point(TimeNs)> arrive)
-      : source_(source), arrive_(std::move(arrive)) {}
+  /// arrive(t_ns): called when a frame set has come; gives when it did. live: frame sets that came
+  /// long before they are asked for are passed over, as a car that lags behind must; their
+  /// readings go to the packet after them.
+  FramePackets(SensorSource& source, std::function<BusyTime::Clock::time_point(TimeNs)> arrive,
+               bool live)
+      : source_(source), arrive_(std::move(arrive)), live_(live) {}
 
   /// The next packet; nothing at the source's end. A source that fails first gives the frame set
   /// that waits, then its error.
   Result<std::optional<FramePacket>> next();
   [[nodiscard]] double readingSeconds() const { return 1e-3 * total_ms_; }
+  /// Frame sets that a live run took no time for.
+  [[nodiscard]] int passedOver() const { return passed_over_; }
 
  private:
+  Result<std::optional<FramePacket>> read();
+  [[nodiscard]] bool isLate(const FramePacket& packet) const;
   void begin(FrameSet frames);
   std::optional<FramePacket> release();  // the one that waits, where there is one
   SensorSource& source_;
   std::function<BusyTime::Clock::time_point(TimeNs)> arrive_;
+  bool live_;
+  int passed_over_ = 0;
   std::optional<FramePacket> waiting_;  // for its next inertial reading
   FramePacket gathering_;
   std::optional<FrameSet> next_frames_;  // came while another one waited

@@ -33,6 +33,7 @@ class MappingRun::Impl {
         T_vehicle_imu_(rig.imu.T_vehicle_imu),
         semantics_delay_(options.semantics_delay),
         pace_(options.pace),
+        live_(options.live),
         pool_(threads - 1) {
     tracker.setParallel([this](int count, const std::function<void(int)>& body) {
       pool_.parallelFor(count, body);
@@ -91,6 +92,7 @@ class MappingRun::Impl {
   BusyTime busy_;
   int semantics_delay_ = 0;
   double pace_ = 0.0;
+  bool live_ = false;
   struct PaceStart {
     Clock::time_point at;
     TimeNs t_ns = 0;
@@ -231,7 +233,8 @@ Clock::time_point MappingRun::Impl::awaitDue(TimeNs t_ns) {
 Status MappingRun::Impl::run(SensorSource& source, const ProgressCallback& progress) {
   const Clock::time_point begin = Clock::now();
   const SensorSourceInfo& info = source.info();
-  FramePackets packets(source, [this](TimeNs t_ns) { return awaitDue(t_ns); });
+  FramePackets packets(
+      source, [this](TimeNs t_ns) { return awaitDue(t_ns); }, live_);
   Status status;
   while (true) {
     Result<std::optional<FramePacket>> packet = packets.next();
@@ -252,6 +255,7 @@ Status MappingRun::Impl::run(SensorSource& source, const ProgressCallback& progr
     }
   }
   summary.reading_s = packets.readingSeconds();
+  summary.frame_sets_passed_over = packets.passedOver();
   finishEstimation();
   if (mapper != nullptr) {
     semantics->finish();

@@ -52,7 +52,8 @@ struct PipelineOptions {
             0.0, 1000.0);
     v.field("live", live,
             "Poses never wait for features: late ones enter when they are ready, and pictures are "
-            "passed over meanwhile. Changes results where the computer does not keep up.");
+            "passed over meanwhile; so are frame sets that the odometry is late for. Changes "
+            "results where the computer does not keep up.");
   }
 };
 
@@ -107,7 +108,7 @@ class PipelineObserver {
 
 /// What a run did, apart from its poses.
 struct RunSummary {
-  int frame_sets = 0;
+  int frame_sets = 0;  ///< that poses were looked for in
   int poses = 0;
   double recorded_s = 0.0;    ///< between the first and the last frame set
   double processing_s = 0.0;  ///< wall time in which tracking or estimation was at work
@@ -116,7 +117,8 @@ struct RunSummary {
   double mean_tracks = 0.0;         ///< observations per frame set
   std::vector<StageTiming> stages;  ///< read, track, estimate, latency (frame set to pose)
   std::vector<int> images;          ///< usable images per camera
-  int pictures_passed_over = 0;     ///< frame sets that a live run took no time to look at
+  int pictures_passed_over = 0;     ///< of these, what a live run took no time to map by
+  int frame_sets_passed_over = 0;   ///< beside these: a live run lagged behind
 };
 
 /// The mapping run: source -> tracker -> estimator. The only owner of threads but for readers and
