@@ -15,6 +15,7 @@
 #include "parkade/core/units.hpp"
 #include "parkade/geometry/planar.hpp"
 #include "parkade/mapping/objects/marker_counts.hpp"
+#include "parkade/mapping/votes.hpp"
 
 namespace parkade {
 namespace {
@@ -137,16 +138,12 @@ std::vector<DigitLine> digitLines(std::vector<Marker>& markers, const Vector2d& 
     lines.back().markers.push_back(marker);
   }
   for (DigitLine& line : lines) {
-    std::ptrdiff_t most = 0;
-    for (const Marker* one : line.markers) {
-      const auto count = std::count_if(
-          line.markers.begin(), line.markers.end(),
-          [&](const Marker* other) { return other->name->digits == one->name->digits; });
-      if (count <= most) continue;
-      most = count;
-      line.digits = one->name->digits;
-      line.across = across(one);
-    }
+    Votes votes;
+    for (const Marker* one : line.markers) votes.add(one->name->digits, 1.0);
+    line.digits = votes.best();
+    const auto bears = [&](const Marker* one) { return one->name->digits == line.digits; };
+    line.across = across(*std::find_if(line.markers.begin(), line.markers.end(), bears));
+    const auto most = std::count_if(line.markers.begin(), line.markers.end(), bears);
     const auto all = static_cast<double>(line.markers.size());
     if (most < 2 || static_cast<double>(most) < kShare * all) line.digits.clear();
   }
