@@ -17,12 +17,8 @@ class EveryInstructionSet : public testing::TestWithParam<std::string> {};
 // A square of 2 m, 1 m above the origin.
 RenderMesh square() {
   RenderMesh mesh;
-  mesh.positions.reserve(5);
   mesh.positions = {{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}};
-  mesh.positions.reserve(5);
-  mesh.triangles.resize(2);
-  const std::uint32_t corners[2][3] = {{0, 1, 2}, {0, 2, 3}};
-  for (std::size_t i = 0; i < 2; ++i) std::memcpy(mesh.triangles[i].v, corners[i], 12);
+  mesh.triangles = {{.v = {0, 1, 2}}, {.v = {0, 2, 3}}};
   return mesh;
 }
 
