@@ -38,6 +38,7 @@ ROOMS = {
 # Third-party headers and the only rooms that may include them; elsewhere they may not appear.
 RESTRICTED = {
     r"ceres/": {"vio", "mapping", "localization"},
+    r"dnnl|omp\.h|onnx/": {"semantics"},
     r"embree3/": {"sim"},
     r"sqlite3\.h": {"mapping"},
     r"httplib\.h": {"viewer"},

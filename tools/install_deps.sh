@@ -13,8 +13,9 @@ packages=(
   # to build
   build-essential cmake git ninja-build pkg-config
   # the program
-  libceres-dev libcli11-dev libcpp-httplib-dev libeigen3-dev libembree-dev libfmt-dev libopencv-dev
-  libspdlog-dev libsqlite3-dev libturbojpeg0-dev libyaml-cpp-dev libzstd-dev nlohmann-json3-dev
+  libceres-dev libcli11-dev libcpp-httplib-dev libdnnl-dev libeigen3-dev libembree-dev libfmt-dev
+  libonnx-dev libopencv-dev libprotobuf-dev libspdlog-dev libsqlite3-dev libturbojpeg0-dev libyaml-cpp-dev
+  libzstd-dev nlohmann-json3-dev ocl-icd-opencl-dev
   # to test and to measure
   libbenchmark-dev libgmock-dev libgtest-dev python3 python3-numpy python3-pil
   python3-yaml

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The Parkade authors
 # SPDX-License-Identifier: Apache-2.0
-"""Writes a trained network as ONNX with its class map, and compares OpenCV's numbers with torch's.
+"""Writes a trained network as ONNX with its class map, and compares the program's numbers with torch's.
 
     tools/train/export.py RUN/state.pt --out models/bev_segmentation
 
@@ -114,7 +114,7 @@ def replacing(*paths):
 
 
 def compare(network, sizes, onnx_path, program):
-    """Ends the program where OpenCV's logits differ from torch's, on random input of each size."""
+    """Ends the program where the program's logits differ from torch's, on random input of each size."""
     worst = 0.0
     with tempfile.TemporaryDirectory() as folder:
         for w, h in sizes:
@@ -129,7 +129,7 @@ def compare(network, sizes, onnx_path, program):
             print(f"{w} x {h}: largest difference {np.abs(found - expected).max():.2g} of logits up "
                   f"to {np.abs(expected).max():.3g}")
     if not worst <= 1e-3:
-        sys.exit(f"OpenCV and torch differ by {worst:g}")
+        sys.exit(f"the program and torch differ by {worst:g}")
 
 
 def parse_arguments(doc, state_help):
@@ -138,7 +138,7 @@ def parse_arguments(doc, state_help):
     parser.add_argument("state", help=state_help)
     parser.add_argument("--out", required=True, help="path without ending")
     parser.add_argument("--check", default="build/release/parkade_onnx_check",
-                        help="program that runs the network in OpenCV, or none")
+                        help="parkade_onnx_check, which runs a network as the program does, or none")
     a = parser.parse_args()
     if a.check != "none" and shutil.which(a.check) is None:
         parser.error(f"--check {a.check}: no such program; it is built with the tests (none: no comparison)")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The Parkade authors
 # SPDX-License-Identifier: Apache-2.0
-"""Writes a trained text reader as ONNX with its YAML file, and compares OpenCV's numbers with torch's.
+"""Writes a trained text reader as ONNX with its YAML file, and compares the program's numbers with torch's.
 
     tools/train/export_text.py RUN/text.pt --out models/zone_text
 

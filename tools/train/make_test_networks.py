@@ -9,6 +9,8 @@ bright.onnx    3 classes by brightness, any size, one channel per class: what a 
 blocks.onnx    2 classes by brightness, four channels per class at half the size
 coarse.onnx    the same, of the means of 2 x 2 px: labels of camera views at half the size
 vector.onnx    no picture comes out
+layers.onnx    all kinds of layers that are compiled, in all places where they may stand
+sigmoid.onnx   one that is not
 """
 import os
 import sys
@@ -58,6 +60,48 @@ def main():
          [helper.make_node("GlobalAveragePool", ["picture"], ["pooled"]),
           helper.make_node("Flatten", ["pooled"], ["logits"])], {}, (16, 16),
          [1, 3])
+    save_layers(folder)
+    save(folder, "sigmoid",
+         [helper.make_node("Conv", ["picture", "w"], ["sums"], kernel_shape=[1, 1]),
+          helper.make_node("Sigmoid", ["sums"], ["logits"])],
+         {"w": np.full((1, 3, 1, 1), 1.0)}, (16, 16), [1, 1, 16, 16])
+
+
+def save_layers(folder):
+    """Sums in place and not, rectifiers behind convolutions, behind sums and alone, a sum with the picture."""
+    random = np.random.default_rng(7)
+    weights, nodes = {}, []
+
+    def convolve(source, output, channels, kernel, **attributes):
+        weights[output + ".w"] = random.normal(0.0, 0.2, (*channels, *kernel))
+        weights[output + ".b"] = random.normal(0.0, 0.2, channels[:1])
+        nodes.append(helper.make_node("Conv", [source, output + ".w", output + ".b"], [output],
+                                      kernel_shape=kernel, **attributes))
+
+    def apply(operator, sources, output, **attributes):
+        nodes.append(helper.make_node(operator, sources, [output], **attributes))
+
+    convolve("picture", "same", (3, 3), (3, 3), pads=[1, 1, 1, 1])
+    apply("Add", ["same", "picture"], "brighter")
+    apply("Relu", ["brighter"], "positive")
+    convolve("positive", "half", (20, 3), (3, 3), pads=[1, 1, 1, 1], strides=[2, 2])
+    apply("Relu", ["half"], "skip")
+    apply("MaxPool", ["skip"], "low", kernel_shape=[2, 1], strides=[2, 1])
+    convolve("low", "far", (20, 20), (1, 5), pads=[0, 4, 0, 4], dilations=[1, 2])
+    apply("Relu", ["far"], "seen")
+    convolve("seen", "change", (20, 20), (3, 3), pads=[1, 1, 1, 1])
+    apply("Add", ["seen", "change"], "deep")
+    apply("Relu", ["deep"], "rectified")
+    weights["factors"] = np.array([1.0, 1.0, 2.0, 1.0])
+    weights["region"] = np.zeros(0)
+    apply("Resize", ["rectified", "region", "factors"], "large", mode="linear",
+          coordinate_transformation_mode="half_pixel")
+    apply("Add", ["large", "skip"], "joined")
+    convolve("joined", "last", (20, 20), (1, 1))
+    apply("Add", ["last", "joined"], "twice")
+    apply("Add", ["twice", "joined"], "thrice")
+    convolve("thrice", "logits", (5, 20), (1, 1))
+    save(folder, "layers", nodes, weights, (16, 24), [1, 5, 8, 12])
 
 
 if __name__ == "__main__":

@@ -4,8 +4,14 @@
 
 #include <fmt/core.h>
 
+#include <array>
 #include <filesystem>
+#include <map>
 #include <opencv2/core/utils/logger.hpp>
+#include <opencv2/dnn.hpp>
+#include <optional>
+
+#include "parkade/semantics/networks/compiled_network.hpp"
 
 namespace parkade {
 namespace {
@@ -28,34 +34,75 @@ std::string shortMessage(const cv::Exception& error) {
   return text.substr(0, text.find('\n'));
 }
 
+cv::dnn::Net readByOpenCv(const std::string& path) {
+  cv::dnn::Net net = cv::dnn::readNetFromONNX(path);
+  net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
+  net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
+  return net;
+}
+
 }  // namespace
 
-Result<cv::dnn::Net> readOnnx(const std::string& path, const std::string& named_by) {
+struct OnnxNetwork::Impl {
+  std::string path;
+  std::optional<CompiledNetwork> compiled;
+  // By height and width of the input: OpenCV is slow to change it.
+  std::map<std::array<int, 2>, cv::dnn::Net> nets;
+
+  Result<cv::Mat> forward(const cv::Mat& input) {
+    if (compiled) return compiled->run(input);
+    try {
+      const QuietOpenCv quiet;
+      const std::array<int, 2> size{input.size[2], input.size[3]};
+      auto found = nets.find(size);
+      if (found == nets.end()) found = nets.emplace(size, readByOpenCv(path)).first;
+      found->second.setInput(input);
+      return found->second.forward();
+    } catch (const cv::Exception& error) {
+      return Error{shortMessage(error)};
+    }
+  }
+};
+
+OnnxNetwork::OnnxNetwork(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+OnnxNetwork::OnnxNetwork(OnnxNetwork&&) noexcept = default;
+OnnxNetwork& OnnxNetwork::operator=(OnnxNetwork&&) noexcept = default;
+OnnxNetwork::~OnnxNetwork() = default;
+
+const std::string& OnnxNetwork::path() const {
+  return impl_->path;
+}
+
+bool OnnxNetwork::isCompiled() const {
+  return impl_->compiled.has_value();
+}
+
+Result<OnnxNetwork> OnnxNetwork::read(const std::string& path, const std::string& named_by) {
   std::error_code code;
   if (!std::filesystem::is_regular_file(path, code)) {
     return Error{fmt::format("{}: network: there is no file {}", named_by, path)};
   }
+  auto impl = std::make_unique<Impl>();
+  impl->path = path;
+  if (std::optional<NetworkGraph> graph = readNetworkGraph(path)) {
+    impl->compiled.emplace(std::move(*graph));
+    return OnnxNetwork(std::move(impl));
+  }
   try {
     const QuietOpenCv quiet;
-    cv::dnn::Net net = cv::dnn::readNetFromONNX(path);
-    net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
-    net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
-    return net;
+    readByOpenCv(path);
   } catch (const cv::Exception& error) {
     return Error{
         fmt::format("{}: OpenCV cannot read this ONNX file: {}", path, shortMessage(error))};
   }
+  return OnnxNetwork(std::move(impl));
 }
 
-Result<cv::Mat> runOnnx(cv::dnn::Net& net, const cv::Mat& input, const std::string& path) {
-  try {
-    const QuietOpenCv quiet;
-    net.setInput(input);
-    return net.forward();
-  } catch (const cv::Exception& error) {
-    return Error{fmt::format("{}: the network does not take a picture of {} x {} px: {}", path,
-                             input.size[3], input.size[2], shortMessage(error))};
-  }
+Result<cv::Mat> OnnxNetwork::run(const cv::Mat& input) {
+  Result<cv::Mat> output = impl_->forward(input);
+  if (output) return output;
+  return Error{fmt::format("{}: the network does not take a picture of {} x {} px: {}", impl_->path,
+                           input.size[3], input.size[2], output.error().message)};
 }
 
 std::string shapeOf(const cv::Mat& numbers) {

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 
 #include "parkade/core/check.hpp"
 #include "parkade/semantics/lines/paint_strokes.hpp"
@@ -35,7 +36,7 @@ Error wrongKind(const std::string& path, bool for_views) {
 
 struct SegmentationNetwork::Impl {
   ClassMap map;
-  cv::dnn::Net net;
+  std::optional<OnnxNetwork> net;
   cv::Mat input;   // N x C x H x W
   cv::Mat logits;  // the same, of the output
   cv::Mat resized;
@@ -68,7 +69,7 @@ Status SegmentationNetwork::Impl::forward(const cv::Mat& bgr) {
       }
     }
   }
-  Result<cv::Mat> out = runOnnx(net, input, map.network);
+  Result<cv::Mat> out = net->run(input);
   if (!out) return out.error();
   logits = std::move(out).value();
   return checkOutput(bgr.size());
@@ -137,7 +138,7 @@ Result<SegmentationNetwork> SegmentationNetwork::load(const std::string& class_m
   if (!map) return map.error();
   auto impl = std::make_unique<Impl>();
   impl->map = std::move(map).value();
-  Result<cv::dnn::Net> net = readOnnx(impl->map.network, class_map_path);
+  Result<OnnxNetwork> net = OnnxNetwork::read(impl->map.network, class_map_path);
   if (!net) return net.error();
   impl->net = std::move(net).value();
   const Status status =

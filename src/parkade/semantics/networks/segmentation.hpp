@@ -23,8 +23,7 @@ struct ViewLabels {
   cv::Mat confidence;  ///< CV_8UC1: probability of that class, 255 = 1
 };
 
-/// A segmentation network from an ONNX file, run by OpenCV. Uses as many threads as OpenCV is set
-/// to. Not thread-safe: it keeps buffers.
+/// A segmentation network from an ONNX file (OnnxNetwork). Not thread-safe: it keeps buffers.
 class SegmentationNetwork {
  public:
   /// Reads a class map and its network, and tries it on an empty picture. Fails with the file and

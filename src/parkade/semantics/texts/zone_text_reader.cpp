@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <optional>
 
 #include "parkade/core/check.hpp"
 #include "parkade/core/yaml.hpp"
@@ -56,8 +57,7 @@ TextNetworkFile parseTextNetwork(const YamlNode& root, const std::string& path) 
 
 struct ZoneTextReader::Impl {
   TextNetworkFile file;
-  cv::dnn::Net net;
-  cv::dnn::Net tall_net;  // the same, for it is slow to change the size of its input
+  std::optional<OnnxNetwork> net;
   bool takes_tall = false;
   cv::Mat input;
 
@@ -75,7 +75,7 @@ struct ZoneTextReader::Impl {
       }
     }
     const bool tall = patch.rows == kTallPatchHeight;
-    Result<cv::Mat> result = runOnnx(tall ? tall_net : net, input, file.network);
+    Result<cv::Mat> result = net->run(input);
     if (!result) return result.error();
     const cv::Mat out = std::move(result).value();
     const int channels = static_cast<int>(file.letters.size()) + 1;
@@ -131,12 +131,9 @@ Result<ZoneTextReader> ZoneTextReader::load(const std::string& path) {
   if (!file) return file.error();
   auto impl = std::make_unique<Impl>();
   impl->file = std::move(file).value();
-  Result<cv::dnn::Net> net = readOnnx(impl->file.network, path);
+  Result<OnnxNetwork> net = OnnxNetwork::read(impl->file.network, path);
   if (!net) return net.error();
   impl->net = std::move(net).value();
-  Result<cv::dnn::Net> tall_net = readOnnx(impl->file.network, path);
-  if (!tall_net) return tall_net.error();
-  impl->tall_net = std::move(tall_net).value();
   const auto tried =
       impl->forward(cv::Mat(kZonePatchHeight, kZonePatchWidth, CV_8UC3, cv::Scalar::all(0)));
   if (!tried) return tried.error();

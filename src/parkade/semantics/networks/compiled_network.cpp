@@ -1,0 +1,320 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/semantics/networks/compiled_network.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <dnnl.hpp>
+#include <map>
+#include <unordered_map>
+#include <utility>
+
+#include "parkade/core/check.hpp"
+
+namespace parkade {
+namespace {
+
+using dnnl::memory;
+using Tag = memory::format_tag;
+using Arguments = std::unordered_map<int, memory>;
+
+constexpr auto kFloat = memory::data_type::f32;
+
+memory::dims dims(const std::array<int, 2>& pair) {
+  return {pair[0], pair[1]};
+}
+
+// The size of a value as a layer's kernel passes over it.
+memory::dims windows(memory::dims size, const NetworkLayer& layer) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    const int extent = (layer.kernel[i] - 1) * layer.dilation[i] + 1;
+    size[2 + i] =
+        (size[2 + i] + layer.pad_before[i] + layer.pad_after[i] - extent) / layer.stride[i] + 1;
+  }
+  return size;
+}
+
+memory::desc anyLayout(const memory::dims& size) {
+  return {size, kFloat, Tag::any};
+}
+
+// oneDNN takes as many threads as OpenMP gives to the calling thread.
+class OneThread {
+ public:
+  OneThread() : before_(omp_get_max_threads()) { omp_set_num_threads(1); }
+  ~OneThread() { omp_set_num_threads(before_); }
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+
+ private:
+  int before_;
+};
+
+/// A layer graph compiled for pictures of one size.
+struct Plan {
+  struct Step {
+    dnnl::primitive primitive;
+    Arguments arguments;
+  };
+  std::vector<Step> steps;
+  memory picture;
+  memory output;
+  cv::Mat result;
+};
+
+class Compiler {
+ public:
+  Compiler(const NetworkGraph& graph, const dnnl::engine& engine)
+      : graph_(graph), engine_(engine), stream_(engine) {}
+
+  Plan compile(const memory::dims& picture);
+
+ private:
+  // What follows a layer and becomes a part of it.
+  struct Fused {
+    bool sum = false;
+    int added = 0;  // the value that it is added to, in place
+    bool relu = false;
+    int output = 0;  // the value that the last of them makes
+    std::size_t layers = 0;
+  };
+
+  [[nodiscard]] Fused fuse(std::size_t index) const;
+  [[nodiscard]] int uses(int value, std::size_t from) const;
+  void addConvolution(const NetworkLayer& layer, const Fused& fused);
+  void addEnlarge(const NetworkLayer& layer, const Fused& fused);
+  void addMaxPool(const NetworkLayer& layer);
+  void addRelu(const NetworkLayer& layer);
+  void addSum(const NetworkLayer& layer);
+  [[nodiscard]] dnnl::primitive_attr attributesOf(const Fused& fused) const;
+  [[nodiscard]] memory::desc layoutFor(const memory::dims& size, const Fused& fused) const;
+  memory inLayout(const memory& value, const memory::desc& layout);
+  memory constant(const memory::dims& size, Tag tag, const std::vector<float>& numbers,
+                  const memory::desc& layout);
+  void keep(int value, const memory& numbers) { values_[static_cast<std::size_t>(value)] = numbers; }
+  memory& at(int value) { return values_[static_cast<std::size_t>(value)]; }
+
+  const NetworkGraph& graph_;
+  dnnl::engine engine_;
+  dnnl::stream stream_;
+  std::vector<memory> values_;
+  Plan plan_;
+};
+
+// How often a value is needed by the layers from that index on, the network's output counted.
+int Compiler::uses(int value, std::size_t from) const {
+  int count = value == graph_.output ? 1 : 0;
+  for (std::size_t i = from; i < graph_.layers.size(); ++i) {
+    const std::vector<int>& inputs = graph_.layers[i].inputs;
+    count += static_cast<int>(std::count(inputs.begin(), inputs.end(), value));
+  }
+  return count;
+}
+
+Compiler::Fused Compiler::fuse(std::size_t index) const {
+  Fused fused;
+  fused.output = graph_.layers[index].output;
+  const auto next = [&]() -> const NetworkLayer* {
+    const std::size_t i = index + 1 + fused.layers;
+    if (i >= graph_.layers.size() || uses(fused.output, i) != 1) return nullptr;
+    const std::vector<int>& inputs = graph_.layers[i].inputs;
+    const bool needs = std::find(inputs.begin(), inputs.end(), fused.output) != inputs.end();
+    return needs ? &graph_.layers[i] : nullptr;
+  };
+  const NetworkLayer* layer = next();
+  if (layer != nullptr && layer->kind == NetworkLayer::Kind::kSum) {
+    const int other = layer->inputs[0] == fused.output ? layer->inputs[1] : layer->inputs[0];
+    // Added in place: nobody may need the other value afterwards, nor may the user's picture change.
+    if (other > 0 && uses(other, index) == 1) {
+      fused.sum = true;
+      fused.added = other;
+      fused.output = layer->output;
+      ++fused.layers;
+      layer = next();
+    }
+  }
+  if (layer != nullptr && layer->kind == NetworkLayer::Kind::kRelu) {
+    fused.relu = true;
+    fused.output = layer->output;
+    ++fused.layers;
+  }
+  return fused;
+}
+
+dnnl::primitive_attr Compiler::attributesOf(const Fused& fused) const {
+  dnnl::post_ops after;
+  if (fused.sum) after.append_sum(1.0F);
+  if (fused.relu) after.append_eltwise(1.0F, dnnl::algorithm::eltwise_relu, 0.0F, 0.0F);
+  dnnl::primitive_attr attributes;
+  attributes.set_post_ops(after);
+  return attributes;
+}
+
+memory::desc Compiler::layoutFor(const memory::dims& size, const Fused& fused) const {
+  if (!fused.sum) return anyLayout(size);
+  const memory::desc layout = values_[static_cast<std::size_t>(fused.added)].get_desc();
+  if (layout.dims() != size) {  // oneDNN would enlarge to that size, too
+    throw dnnl::error(dnnl_invalid_arguments, "values of different sizes are added");
+  }
+  return layout;
+}
+
+memory Compiler::inLayout(const memory& value, const memory::desc& layout) {
+  if (value.get_desc() == layout) return value;
+  memory other(layout, engine_);
+  plan_.steps.push_back({dnnl::reorder(value, other), {{DNNL_ARG_FROM, value}, {DNNL_ARG_TO, other}}});
+  return other;
+}
+
+memory Compiler::constant(const memory::dims& size, Tag tag, const std::vector<float>& numbers,
+                          const memory::desc& layout) {
+  memory plain({size, kFloat, tag}, engine_);
+  std::copy(numbers.begin(), numbers.end(), static_cast<float*>(plain.get_data_handle()));
+  memory laid(layout, engine_);
+  dnnl::reorder(plain, laid).execute(stream_, plain, laid);
+  stream_.wait();
+  return laid;
+}
+
+void Compiler::addConvolution(const NetworkLayer& layer, const Fused& fused) {
+  const memory source = at(layer.inputs[0]);
+  const memory::dims in = source.get_desc().dims();
+  memory::dims out = windows(in, layer);
+  out[1] = layer.channels[0];
+  const memory::dims kernel{layer.channels[0], layer.channels[1], layer.kernel[0], layer.kernel[1]};
+  const dnnl::convolution_forward::desc wanted(
+      dnnl::prop_kind::forward_inference, dnnl::algorithm::convolution_direct, anyLayout(in),
+      anyLayout(kernel), memory::desc({layer.channels[0]}, kFloat, Tag::x), layoutFor(out, fused),
+      dims(layer.stride), memory::dims{layer.dilation[0] - 1, layer.dilation[1] - 1},
+      dims(layer.pad_before), dims(layer.pad_after));
+  const dnnl::convolution_forward::primitive_desc chosen(wanted, attributesOf(fused), engine_);
+  const memory laid = inLayout(source, chosen.src_desc());
+  const memory target = fused.sum ? at(fused.added) : memory(chosen.dst_desc(), engine_);
+  plan_.steps.push_back(
+      {dnnl::convolution_forward(chosen),
+       {{DNNL_ARG_SRC, laid},
+        {DNNL_ARG_WEIGHTS, constant(kernel, Tag::oihw, layer.weights, chosen.weights_desc())},
+        {DNNL_ARG_BIAS, constant({layer.channels[0]}, Tag::x, layer.bias, chosen.bias_desc())},
+        {DNNL_ARG_DST, target}}});
+  keep(fused.output, target);
+}
+
+void Compiler::addEnlarge(const NetworkLayer& layer, const Fused& fused) {
+  const memory source = at(layer.inputs[0]);
+  memory::dims out = source.get_desc().dims();
+  for (std::size_t i = 0; i < 2; ++i) out[2 + i] *= layer.factor[i];
+  const dnnl::resampling_forward::desc wanted(dnnl::prop_kind::forward_inference,
+                                              dnnl::algorithm::resampling_linear, source.get_desc(),
+                                              layoutFor(out, fused));
+  const dnnl::resampling_forward::primitive_desc chosen(wanted, attributesOf(fused), engine_);
+  const memory target = fused.sum ? at(fused.added) : memory(chosen.dst_desc(), engine_);
+  plan_.steps.push_back({dnnl::resampling_forward(chosen),
+                         {{DNNL_ARG_SRC, source}, {DNNL_ARG_DST, target}}});
+  keep(fused.output, target);
+}
+
+void Compiler::addMaxPool(const NetworkLayer& layer) {
+  const memory source = at(layer.inputs[0]);
+  const memory::dims out = windows(source.get_desc().dims(), layer);
+  const dnnl::pooling_forward::desc wanted(
+      dnnl::prop_kind::forward_inference, dnnl::algorithm::pooling_max, source.get_desc(),
+      anyLayout(out), dims(layer.stride), dims(layer.kernel), dims(layer.pad_before),
+      dims(layer.pad_after));
+  const dnnl::pooling_forward::primitive_desc chosen(wanted, engine_);
+  const memory target(chosen.dst_desc(), engine_);
+  plan_.steps.push_back({dnnl::pooling_forward(chosen), {{DNNL_ARG_SRC, source}, {DNNL_ARG_DST, target}}});
+  keep(layer.output, target);
+}
+
+void Compiler::addRelu(const NetworkLayer& layer) {
+  const memory source = at(layer.inputs[0]);
+  const dnnl::eltwise_forward::desc wanted(dnnl::prop_kind::forward_inference,
+                                           dnnl::algorithm::eltwise_relu, source.get_desc(), 0.0F);
+  const dnnl::eltwise_forward::primitive_desc chosen(wanted, engine_);
+  const memory target(chosen.dst_desc(), engine_);
+  plan_.steps.push_back({dnnl::eltwise_forward(chosen), {{DNNL_ARG_SRC, source}, {DNNL_ARG_DST, target}}});
+  keep(layer.output, target);
+}
+
+void Compiler::addSum(const NetworkLayer& layer) {
+  const memory first = at(layer.inputs[0]);
+  const memory second = inLayout(at(layer.inputs[1]), first.get_desc());
+  const dnnl::binary::desc wanted(dnnl::algorithm::binary_add, first.get_desc(), second.get_desc(),
+                                  first.get_desc());
+  const dnnl::binary::primitive_desc chosen(wanted, engine_);
+  const memory target(chosen.dst_desc(), engine_);
+  plan_.steps.push_back({dnnl::binary(chosen),
+                         {{DNNL_ARG_SRC_0, first}, {DNNL_ARG_SRC_1, second}, {DNNL_ARG_DST, target}}});
+  keep(layer.output, target);
+}
+
+Plan Compiler::compile(const memory::dims& picture) {
+  values_.assign(static_cast<std::size_t>(graph_.values), memory());
+  plan_.picture = memory({picture, kFloat, Tag::nchw}, engine_);
+  keep(0, plan_.picture);
+  for (std::size_t i = 0; i < graph_.layers.size(); ++i) {
+    const NetworkLayer& layer = graph_.layers[i];
+    switch (layer.kind) {
+      case NetworkLayer::Kind::kConvolution: {
+        const Fused fused = fuse(i);
+        addConvolution(layer, fused);
+        i += fused.layers;
+        break;
+      }
+      case NetworkLayer::Kind::kEnlarge: {
+        const Fused fused = fuse(i);
+        addEnlarge(layer, fused);
+        i += fused.layers;
+        break;
+      }
+      case NetworkLayer::Kind::kMaxPool: addMaxPool(layer); break;
+      case NetworkLayer::Kind::kRelu: addRelu(layer); break;
+      case NetworkLayer::Kind::kSum: addSum(layer); break;
+    }
+  }
+  const memory::dims size = at(graph_.output).get_desc().dims();
+  plan_.output = inLayout(at(graph_.output), {size, kFloat, Tag::nchw});
+  const std::vector<int> sizes(size.begin(), size.end());
+  plan_.result = cv::Mat(sizes, CV_32F, plan_.output.get_data_handle());
+  return std::move(plan_);
+}
+
+}  // namespace
+
+struct CompiledNetwork::Impl {
+  NetworkGraph graph;
+  dnnl::engine engine{dnnl::engine::kind::cpu, 0};
+  dnnl::stream stream{engine};
+  std::map<std::array<int, 4>, Plan> plans;  // by the picture's size
+};
+
+CompiledNetwork::CompiledNetwork(NetworkGraph graph) : impl_(std::make_unique<Impl>()) {
+  impl_->graph = std::move(graph);
+}
+CompiledNetwork::CompiledNetwork(CompiledNetwork&&) noexcept = default;
+CompiledNetwork& CompiledNetwork::operator=(CompiledNetwork&&) noexcept = default;
+CompiledNetwork::~CompiledNetwork() = default;
+
+Result<cv::Mat> CompiledNetwork::run(const cv::Mat& picture) {
+  PARKADE_CHECK(picture.dims == 4 && picture.type() == CV_32F && picture.isContinuous(),
+                "picture of {} dimensions, type {}", picture.dims, picture.type());
+  const OneThread one_thread;
+  const std::array<int, 4> size{picture.size[0], picture.size[1], picture.size[2], picture.size[3]};
+  try {
+    auto found = impl_->plans.find(size);
+    if (found == impl_->plans.end()) {
+      Plan plan = Compiler(impl_->graph, impl_->engine).compile({size.begin(), size.end()});
+      found = impl_->plans.emplace(size, std::move(plan)).first;
+    }
+    Plan& plan = found->second;
+    plan.picture.set_data_handle(picture.data);
+    for (const Plan::Step& step : plan.steps) step.primitive.execute(impl_->stream, step.arguments);
+    impl_->stream.wait();
+    return plan.result;
+  } catch (const dnnl::error& error) {
+    return Error{error.what()};
+  }
+}
+
+}  // namespace parkade
