@@ -93,6 +93,8 @@ def write_class_map(pictures, model, path):
     if pictures in METRES_PER_PX:
         lines.append(f"  metres_per_px: {METRES_PER_PX[pictures]}")
         lines.append("unknown_is_unseen: true")
+    else:
+        lines.append("mirror: true")
     lines.append("classes: [" + ", ".join(NETWORKS[pictures]["classes"]) + "]")
     with open(path, "w") as file:
         file.write("\n".join(lines) + "\n")

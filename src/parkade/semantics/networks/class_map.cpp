@@ -42,7 +42,7 @@ SemanticClass classOf(const YamlNode& node) {
 }
 
 ClassMap parseClassMap(const YamlNode& root, const std::string& path) {
-  root.allowOnly({"network", "input", "classes", "unknown_is_unseen"});
+  root.allowOnly({"network", "input", "classes", "unknown_is_unseen", "mirror"});
   ClassMap map;
   map.path = path;
   map.network =
@@ -77,6 +77,7 @@ ClassMap parseClassMap(const YamlNode& root, const std::string& path) {
         "a network of bird's-eye pictures must tell floor: slots, lines and objects are found by "
         "it");
   }
+  if (root.has("mirror")) map.mirror = root.at("mirror").asBool();
   if (root.has("unknown_is_unseen")) {
     const YamlNode unseen = root.at("unknown_is_unseen");
     map.unknown_is_unseen = unseen.asBool();

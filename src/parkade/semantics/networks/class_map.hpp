@@ -26,6 +26,7 @@ struct ClassMap {
   /// Of a bird's-eye network: its unknown stands for what the picture does not show, and is told
   /// nowhere else.
   bool unknown_is_unseen = false;
+  bool mirror = false;  ///< label the mirror image as well and take the mean of both logits
 };
 
 /// Fails with file, line and key on a missing file, an unknown key or class, or a bad value.

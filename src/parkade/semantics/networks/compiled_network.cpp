@@ -92,7 +92,9 @@ class Compiler {
   memory inLayout(const memory& value, const memory::desc& layout);
   memory constant(const memory::dims& size, Tag tag, const std::vector<float>& numbers,
                   const memory::desc& layout);
-  void keep(int value, const memory& numbers) { values_[static_cast<std::size_t>(value)] = numbers; }
+  void keep(int value, const memory& numbers) {
+    values_[static_cast<std::size_t>(value)] = numbers;
+  }
   memory& at(int value) { return values_[static_cast<std::size_t>(value)]; }
 
   const NetworkGraph& graph_;
@@ -125,7 +127,8 @@ Compiler::Fused Compiler::fuse(std::size_t index) const {
   const NetworkLayer* layer = next();
   if (layer != nullptr && layer->kind == NetworkLayer::Kind::kSum) {
     const int other = layer->inputs[0] == fused.output ? layer->inputs[1] : layer->inputs[0];
-    // Added in place: nobody may need the other value afterwards, nor may the user's picture change.
+    // Added in place: nobody may need the other value afterwards, nor may the user's picture
+    // change.
     if (other > 0 && uses(other, index) == 1) {
       fused.sum = true;
       fused.added = other;
@@ -163,7 +166,8 @@ memory::desc Compiler::layoutFor(const memory::dims& size, const Fused& fused) c
 memory Compiler::inLayout(const memory& value, const memory::desc& layout) {
   if (value.get_desc() == layout) return value;
   memory other(layout, engine_);
-  plan_.steps.push_back({dnnl::reorder(value, other), {{DNNL_ARG_FROM, value}, {DNNL_ARG_TO, other}}});
+  plan_.steps.push_back(
+      {dnnl::reorder(value, other), {{DNNL_ARG_FROM, value}, {DNNL_ARG_TO, other}}});
   return other;
 }
 
@@ -209,21 +213,22 @@ void Compiler::addEnlarge(const NetworkLayer& layer, const Fused& fused) {
                                               layoutFor(out, fused));
   const dnnl::resampling_forward::primitive_desc chosen(wanted, attributesOf(fused), engine_);
   const memory target = fused.sum ? at(fused.added) : memory(chosen.dst_desc(), engine_);
-  plan_.steps.push_back({dnnl::resampling_forward(chosen),
-                         {{DNNL_ARG_SRC, source}, {DNNL_ARG_DST, target}}});
+  plan_.steps.push_back(
+      {dnnl::resampling_forward(chosen), {{DNNL_ARG_SRC, source}, {DNNL_ARG_DST, target}}});
   keep(fused.output, target);
 }
 
 void Compiler::addMaxPool(const NetworkLayer& layer) {
   const memory source = at(layer.inputs[0]);
   const memory::dims out = windows(source.get_desc().dims(), layer);
-  const dnnl::pooling_forward::desc wanted(
-      dnnl::prop_kind::forward_inference, dnnl::algorithm::pooling_max, source.get_desc(),
-      anyLayout(out), dims(layer.stride), dims(layer.kernel), dims(layer.pad_before),
-      dims(layer.pad_after));
+  const dnnl::pooling_forward::desc wanted(dnnl::prop_kind::forward_inference,
+                                           dnnl::algorithm::pooling_max, source.get_desc(),
+                                           anyLayout(out), dims(layer.stride), dims(layer.kernel),
+                                           dims(layer.pad_before), dims(layer.pad_after));
   const dnnl::pooling_forward::primitive_desc chosen(wanted, engine_);
   const memory target(chosen.dst_desc(), engine_);
-  plan_.steps.push_back({dnnl::pooling_forward(chosen), {{DNNL_ARG_SRC, source}, {DNNL_ARG_DST, target}}});
+  plan_.steps.push_back(
+      {dnnl::pooling_forward(chosen), {{DNNL_ARG_SRC, source}, {DNNL_ARG_DST, target}}});
   keep(layer.output, target);
 }
 
@@ -233,7 +238,8 @@ void Compiler::addRelu(const NetworkLayer& layer) {
                                            dnnl::algorithm::eltwise_relu, source.get_desc(), 0.0F);
   const dnnl::eltwise_forward::primitive_desc chosen(wanted, engine_);
   const memory target(chosen.dst_desc(), engine_);
-  plan_.steps.push_back({dnnl::eltwise_forward(chosen), {{DNNL_ARG_SRC, source}, {DNNL_ARG_DST, target}}});
+  plan_.steps.push_back(
+      {dnnl::eltwise_forward(chosen), {{DNNL_ARG_SRC, source}, {DNNL_ARG_DST, target}}});
   keep(layer.output, target);
 }
 
@@ -244,8 +250,9 @@ void Compiler::addSum(const NetworkLayer& layer) {
                                   first.get_desc());
   const dnnl::binary::primitive_desc chosen(wanted, engine_);
   const memory target(chosen.dst_desc(), engine_);
-  plan_.steps.push_back({dnnl::binary(chosen),
-                         {{DNNL_ARG_SRC_0, first}, {DNNL_ARG_SRC_1, second}, {DNNL_ARG_DST, target}}});
+  plan_.steps.push_back(
+      {dnnl::binary(chosen),
+       {{DNNL_ARG_SRC_0, first}, {DNNL_ARG_SRC_1, second}, {DNNL_ARG_DST, target}}});
   keep(layer.output, target);
 }
 
@@ -268,9 +275,15 @@ Plan Compiler::compile(const memory::dims& picture) {
         i += fused.layers;
         break;
       }
-      case NetworkLayer::Kind::kMaxPool: addMaxPool(layer); break;
-      case NetworkLayer::Kind::kRelu: addRelu(layer); break;
-      case NetworkLayer::Kind::kSum: addSum(layer); break;
+      case NetworkLayer::Kind::kMaxPool:
+        addMaxPool(layer);
+        break;
+      case NetworkLayer::Kind::kRelu:
+        addRelu(layer);
+        break;
+      case NetworkLayer::Kind::kSum:
+        addSum(layer);
+        break;
     }
   }
   const memory::dims size = at(graph_.output).get_desc().dims();

@@ -19,8 +19,8 @@ class CompiledNetwork {
   CompiledNetwork& operator=(CompiledNetwork&&) noexcept;
   ~CompiledNetwork();
 
-  /// picture: 1 x C x H x W of CV_32F; gives the same of its own output, overwritten by the next run
-  /// on a picture of that size. The first picture of a size takes longer, since the layers are
+  /// picture: 1 x C x H x W of CV_32F; gives the same of its own output, overwritten by the next
+  /// run on a picture of that size. The first picture of a size takes longer, since the layers are
   /// compiled for it. Fails where the graph does not take that size.
   Result<cv::Mat> run(const cv::Mat& picture);
 

@@ -57,7 +57,8 @@ class GraphReader {
   }
 
  private:
-  const onnx::AttributeProto* attribute(const onnx::NodeProto& node, const std::string& name) const {
+  const onnx::AttributeProto* attribute(const onnx::NodeProto& node,
+                                        const std::string& name) const {
     for (const auto& each : node.attribute()) {
       if (each.name() == name) return &each;
     }

@@ -9,7 +9,8 @@
 
 namespace parkade {
 
-/// One layer of a convolutional network: it makes one value (N x C x H x W numbers) from one or two.
+/// One layer of a convolutional network: it makes one value (N x C x H x W numbers) from one or
+/// two.
 struct NetworkLayer {
   enum class Kind { kConvolution, kRelu, kSum, kMaxPool, kEnlarge };
   Kind kind = Kind::kRelu;

@@ -57,16 +57,15 @@ TEST_P(CompiledNetworks, GiveWhatOpenCvGives) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    OfParkade, CompiledNetworks,
-    testing::Values(SizedNetwork{kTestNetworks + "layers.onnx", 16, 24},
-                    SizedNetwork{kTestNetworks + "layers.onnx", 48, 32},
-                    SizedNetwork{kTestNetworks + "blocks.onnx", 16, 16},
-                    SizedNetwork{kModels + "bev_segmentation.onnx", 384, 384},
-                    SizedNetwork{kModels + "view_segmentation.onnx", 192, 320},
-                    SizedNetwork{kModels + "zone_text.onnx", 40, 96},
-                    SizedNetwork{kModels + "zone_text.onnx", 72, 96},
-                    SizedNetwork{kModels + "slot_number.onnx", 40, 96}));
+INSTANTIATE_TEST_SUITE_P(OfParkade, CompiledNetworks,
+                         testing::Values(SizedNetwork{kTestNetworks + "layers.onnx", 16, 24},
+                                         SizedNetwork{kTestNetworks + "layers.onnx", 48, 32},
+                                         SizedNetwork{kTestNetworks + "blocks.onnx", 16, 16},
+                                         SizedNetwork{kModels + "bev_segmentation.onnx", 384, 384},
+                                         SizedNetwork{kModels + "view_segmentation.onnx", 192, 320},
+                                         SizedNetwork{kModels + "zone_text.onnx", 40, 96},
+                                         SizedNetwork{kModels + "zone_text.onnx", 72, 96},
+                                         SizedNetwork{kModels + "slot_number.onnx", 40, 96}));
 
 TEST(OnnxNetwork, TakesSizesInTurns) {
   Result<OnnxNetwork> network = OnnxNetwork::read(kTestNetworks + "layers.onnx", "test");

@@ -37,10 +37,12 @@ Error wrongKind(const std::string& path, bool for_views) {
 struct SegmentationNetwork::Impl {
   ClassMap map;
   std::optional<OnnxNetwork> net;
-  cv::Mat input;   // N x C x H x W
-  cv::Mat logits;  // the same, of the output
+  cv::Mat input;     // N x C x H x W
+  cv::Mat logits;    // the same, of the output
+  cv::Mat mirrored;  // the input's mirror image
   cv::Mat resized;
 
+  Status addMirrored(const cv::Size& size);
   Status forward(const cv::Mat& bgr);
   // Of a bird's-eye picture at the network's metres per pixel.
   [[nodiscard]] cv::Size sizeFor(const BevGeometry& geometry) const {
@@ -72,7 +74,33 @@ Status SegmentationNetwork::Impl::forward(const cv::Mat& bgr) {
   Result<cv::Mat> out = net->run(input);
   if (!out) return out.error();
   logits = std::move(out).value();
-  return checkOutput(bgr.size());
+  const Status as_expected = checkOutput(bgr.size());
+  return as_expected && map.mirror ? addMirrored(bgr.size()) : as_expected;
+}
+
+// Takes the mean of the logits and of those of the mirror image, mirrored back.
+Status SegmentationNetwork::Impl::addMirrored(const cv::Size& size) {
+  const int columns = input.size[3];
+  mirrored.create(input.dims, input.size.p, CV_32F);
+  for (std::ptrdiff_t row = 0; row < static_cast<std::ptrdiff_t>(input.total()) / columns; ++row) {
+    const float* const from = input.ptr<float>() + row * columns;
+    std::reverse_copy(from, from + columns, mirrored.ptr<float>() + row * columns);
+  }
+  cv::Mat mean = logits.clone();  // the next run writes where these are
+  const Result<cv::Mat> other = net->run(mirrored);
+  if (!other) return other.error();
+  const int width = mean.size[3];
+  // Within blocks left and right pixels are channels of their own.
+  const int swap = inBlocks(size) ? 1 : 0;
+  for (int c = 0; c < mean.size[1]; ++c) {
+    for (int v = 0; v < mean.size[2]; ++v) {
+      float* const to = mean.ptr<float>(0, c, v);
+      const float* const from = other->ptr<float>(0, c ^ swap, v);
+      for (int u = 0; u < width; ++u) to[u] = 0.5F * (to[u] + from[width - 1 - u]);
+    }
+  }
+  logits = mean;
+  return {};
 }
 
 Status SegmentationNetwork::Impl::checkOutput(const cv::Size& size) const {

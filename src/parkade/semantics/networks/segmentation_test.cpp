@@ -155,6 +155,40 @@ TEST_F(ClassMapFile, LabelsOfViewsMayBeCoarserThanWhatTheNetworkSees) {
   EXPECT_EQ(cv::countNonZero(labels->labels != expected), 0);
 }
 
+TEST_F(ClassMapFile, WithItsMirrorImageAPictureIsLabelledLikeIt) {
+  // One that sees to the sides, and one whose channels are the pixels of blocks.
+  const std::array<std::string, 2> networks = {
+      "layers.onnx\ninput: {width: 24, height: 16, any_size: true, mean: 127.5, "
+      "scale: 0.00784313725}\nclasses: [floor, vehicle, pillar, zone_marker, guide_sign]\n",
+      "blocks.onnx\ninput: {width: 24, height: 16, mean: 127.5, scale: 0.00784313725}\n"
+      "classes: [floor, vehicle]\n"};
+  for (const std::string& network : networks) {
+    const auto load = [&](const std::string& more) {
+      return SegmentationNetwork::load(write("network: " + kNetworks + network + more));
+    };
+    Result<SegmentationNetwork> plain = load("");
+    Result<SegmentationNetwork> mirroring = load("mirror: true\n");
+    ASSERT_TRUE(plain) << plain.error().message;
+    ASSERT_TRUE(mirroring) << mirroring.error().message;
+    cv::Mat image(16, 24, CV_8UC3);
+    cv::RNG(4).fill(image, cv::RNG::UNIFORM, 0, 256);
+    cv::Mat mirrored;
+    cv::flip(image, mirrored, 1);
+    const auto labelsOf = [](Result<SegmentationNetwork>& of, const cv::Mat& picture) {
+      return of->segmentView(picture)->labels.clone();
+    };
+    cv::Mat flipped;
+    cv::flip(labelsOf(mirroring, mirrored), flipped, 1);
+    EXPECT_EQ(cv::countNonZero(labelsOf(mirroring, image) != flipped), 0) << network;
+    cv::flip(labelsOf(plain, mirrored), flipped, 1);
+    const bool sees_sides = cv::countNonZero(labelsOf(plain, image) != flipped) > 0;
+    EXPECT_EQ(sees_sides, network.rfind("layers", 0) == 0) << network;
+    if (!sees_sides) {
+      EXPECT_EQ(cv::countNonZero(labelsOf(plain, image) != labelsOf(mirroring, image)), 0);
+    }
+  }
+}
+
 TEST_F(ClassMapFile, BadModelsEndWithAClearMessage) {
   EXPECT_THAT(messageOf((folder_ / "none.yaml").string()), HasSubstr("none.yaml"));
   EXPECT_THAT(messageOf(write("network: gone.onnx\ninput: {width: 16, height: 16}\n"
