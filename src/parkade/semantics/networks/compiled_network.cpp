@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "parkade/core/check.hpp"
+#include "parkade/semantics/networks/layer_fusion.hpp"
 
 namespace parkade {
 namespace {
@@ -71,24 +72,13 @@ class Compiler {
   Plan compile(const memory::dims& picture);
 
  private:
-  // What follows a layer and becomes a part of it.
-  struct Fused {
-    bool sum = false;
-    int added = 0;  // the value that it is added to, in place
-    bool relu = false;
-    int output = 0;  // the value that the last of them makes
-    std::size_t layers = 0;
-  };
-
-  [[nodiscard]] Fused fuse(std::size_t index) const;
-  [[nodiscard]] int uses(int value, std::size_t from) const;
-  void addConvolution(const NetworkLayer& layer, const Fused& fused);
-  void addEnlarge(const NetworkLayer& layer, const Fused& fused);
+  void addConvolution(const NetworkLayer& layer, const FusedLayers& fused);
+  void addEnlarge(const NetworkLayer& layer, const FusedLayers& fused);
   void addMaxPool(const NetworkLayer& layer);
   void addRelu(const NetworkLayer& layer);
   void addSum(const NetworkLayer& layer);
-  [[nodiscard]] dnnl::primitive_attr attributesOf(const Fused& fused) const;
-  [[nodiscard]] memory::desc layoutFor(const memory::dims& size, const Fused& fused) const;
+  [[nodiscard]] dnnl::primitive_attr attributesOf(const FusedLayers& fused) const;
+  [[nodiscard]] memory::desc layoutFor(const memory::dims& size, const FusedLayers& fused) const;
   memory inLayout(const memory& value, const memory::desc& layout);
   memory constant(const memory::dims& size, Tag tag, const std::vector<float>& numbers,
                   const memory::desc& layout);
@@ -104,48 +94,7 @@ class Compiler {
   Plan plan_;
 };
 
-// How often a value is needed by the layers from that index on, the network's output counted.
-int Compiler::uses(int value, std::size_t from) const {
-  int count = value == graph_.output ? 1 : 0;
-  for (std::size_t i = from; i < graph_.layers.size(); ++i) {
-    const std::vector<int>& inputs = graph_.layers[i].inputs;
-    count += static_cast<int>(std::count(inputs.begin(), inputs.end(), value));
-  }
-  return count;
-}
-
-Compiler::Fused Compiler::fuse(std::size_t index) const {
-  Fused fused;
-  fused.output = graph_.layers[index].output;
-  const auto next = [&]() -> const NetworkLayer* {
-    const std::size_t i = index + 1 + fused.layers;
-    if (i >= graph_.layers.size() || uses(fused.output, i) != 1) return nullptr;
-    const std::vector<int>& inputs = graph_.layers[i].inputs;
-    const bool needs = std::find(inputs.begin(), inputs.end(), fused.output) != inputs.end();
-    return needs ? &graph_.layers[i] : nullptr;
-  };
-  const NetworkLayer* layer = next();
-  if (layer != nullptr && layer->kind == NetworkLayer::Kind::kSum) {
-    const int other = layer->inputs[0] == fused.output ? layer->inputs[1] : layer->inputs[0];
-    // Added in place: nobody may need the other value afterwards, nor may the user's picture
-    // change.
-    if (other > 0 && uses(other, index) == 1) {
-      fused.sum = true;
-      fused.added = other;
-      fused.output = layer->output;
-      ++fused.layers;
-      layer = next();
-    }
-  }
-  if (layer != nullptr && layer->kind == NetworkLayer::Kind::kRelu) {
-    fused.relu = true;
-    fused.output = layer->output;
-    ++fused.layers;
-  }
-  return fused;
-}
-
-dnnl::primitive_attr Compiler::attributesOf(const Fused& fused) const {
+dnnl::primitive_attr Compiler::attributesOf(const FusedLayers& fused) const {
   dnnl::post_ops after;
   if (fused.sum) after.append_sum(1.0F);
   if (fused.relu) after.append_eltwise(1.0F, dnnl::algorithm::eltwise_relu, 0.0F, 0.0F);
@@ -154,7 +103,7 @@ dnnl::primitive_attr Compiler::attributesOf(const Fused& fused) const {
   return attributes;
 }
 
-memory::desc Compiler::layoutFor(const memory::dims& size, const Fused& fused) const {
+memory::desc Compiler::layoutFor(const memory::dims& size, const FusedLayers& fused) const {
   if (!fused.sum) return anyLayout(size);
   const memory::desc layout = values_[static_cast<std::size_t>(fused.added)].get_desc();
   if (layout.dims() != size) {  // oneDNN would enlarge to that size, too
@@ -181,7 +130,7 @@ memory Compiler::constant(const memory::dims& size, Tag tag, const std::vector<f
   return laid;
 }
 
-void Compiler::addConvolution(const NetworkLayer& layer, const Fused& fused) {
+void Compiler::addConvolution(const NetworkLayer& layer, const FusedLayers& fused) {
   const memory source = at(layer.inputs[0]);
   const memory::dims in = source.get_desc().dims();
   memory::dims out = windows(in, layer);
@@ -204,7 +153,7 @@ void Compiler::addConvolution(const NetworkLayer& layer, const Fused& fused) {
   keep(fused.output, target);
 }
 
-void Compiler::addEnlarge(const NetworkLayer& layer, const Fused& fused) {
+void Compiler::addEnlarge(const NetworkLayer& layer, const FusedLayers& fused) {
   const memory source = at(layer.inputs[0]);
   memory::dims out = source.get_desc().dims();
   for (std::size_t i = 0; i < 2; ++i) out[2 + i] *= layer.factor[i];
@@ -264,15 +213,15 @@ Plan Compiler::compile(const memory::dims& picture) {
     const NetworkLayer& layer = graph_.layers[i];
     switch (layer.kind) {
       case NetworkLayer::Kind::kConvolution: {
-        const Fused fused = fuse(i);
+        const FusedLayers fused = fuseFollowing(graph_, i);
         addConvolution(layer, fused);
-        i += fused.layers;
+        i += fused.count;
         break;
       }
       case NetworkLayer::Kind::kEnlarge: {
-        const Fused fused = fuse(i);
+        const FusedLayers fused = fuseFollowing(graph_, i);
         addEnlarge(layer, fused);
-        i += fused.layers;
+        i += fused.count;
         break;
       }
       case NetworkLayer::Kind::kMaxPool:

@@ -95,6 +95,10 @@ class GraphReader {
     layer.pad_after = pair(node, "pads", 0, 2, 4);
     layer.dilation = pair(node, "dilations", 1);
     require(text(node, "auto_pad", "NOTSET") == "NOTSET");
+    for (std::size_t i = 0; i < 2; ++i) {
+      require(layer.stride[i] > 0 && layer.dilation[i] > 0);
+      require(layer.pad_before[i] >= 0 && layer.pad_after[i] >= 0);
+    }
   }
 
   void readConvolution(const onnx::NodeProto& node, NetworkLayer& layer) const {
