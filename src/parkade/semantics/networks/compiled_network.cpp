@@ -21,6 +21,7 @@ using Tag = memory::format_tag;
 using Arguments = std::unordered_map<int, memory>;
 
 constexpr auto kFloat = memory::data_type::f32;
+constexpr const char* kOtherSizes = "values of different sizes are added";
 
 memory::dims dims(const std::array<int, 2>& pair) {
   return {pair[0], pair[1]};
@@ -73,12 +74,17 @@ class Compiler {
 
  private:
   void addConvolution(const NetworkLayer& layer, const FusedLayers& fused);
-  void addEnlarge(const NetworkLayer& layer, const FusedLayers& fused);
+  void addEnlarge(const NetworkLayer& layer);
   void addMaxPool(const NetworkLayer& layer);
   void addRelu(const NetworkLayer& layer);
   void addSum(const NetworkLayer& layer);
   [[nodiscard]] dnnl::primitive_attr attributesOf(const FusedLayers& fused) const;
   [[nodiscard]] memory::desc layoutFor(const memory::dims& size, const FusedLayers& fused) const;
+  template <typename Primitive>
+  void addStep(const typename Primitive::primitive_desc& chosen, Arguments arguments) {
+    arguments.emplace(DNNL_ARG_SCRATCHPAD, memory(chosen.scratchpad_desc(), engine_));
+    plan_.steps.push_back({Primitive(chosen), std::move(arguments)});
+  }
   memory inLayout(const memory& value, const memory::desc& layout);
   memory constant(const memory::dims& size, Tag tag, const std::vector<float>& numbers,
                   const memory::desc& layout);
@@ -100,14 +106,16 @@ dnnl::primitive_attr Compiler::attributesOf(const FusedLayers& fused) const {
   if (fused.relu) after.append_eltwise(1.0F, dnnl::algorithm::eltwise_relu, 0.0F, 0.0F);
   dnnl::primitive_attr attributes;
   attributes.set_post_ops(after);
+  // The library's own belongs to the thread that compiles; another one may run the network.
+  attributes.set_scratchpad_mode(dnnl::scratchpad_mode::user);
   return attributes;
 }
 
 memory::desc Compiler::layoutFor(const memory::dims& size, const FusedLayers& fused) const {
   if (!fused.sum) return anyLayout(size);
   const memory::desc layout = values_[static_cast<std::size_t>(fused.added)].get_desc();
-  if (layout.dims() != size) {  // oneDNN would enlarge to that size, too
-    throw dnnl::error(dnnl_invalid_arguments, "values of different sizes are added");
+  if (layout.dims() != size) {
+    throw dnnl::error(dnnl_invalid_arguments, kOtherSizes);
   }
   return layout;
 }
@@ -115,8 +123,9 @@ memory::desc Compiler::layoutFor(const memory::dims& size, const FusedLayers& fu
 memory Compiler::inLayout(const memory& value, const memory::desc& layout) {
   if (value.get_desc() == layout) return value;
   memory other(layout, engine_);
-  plan_.steps.push_back(
-      {dnnl::reorder(value, other), {{DNNL_ARG_FROM, value}, {DNNL_ARG_TO, other}}});
+  const dnnl::reorder::primitive_desc chosen(engine_, value.get_desc(), engine_, layout,
+                                             attributesOf({}));
+  addStep<dnnl::reorder>(chosen, {{DNNL_ARG_FROM, value}, {DNNL_ARG_TO, other}});
   return other;
 }
 
@@ -144,27 +153,27 @@ void Compiler::addConvolution(const NetworkLayer& layer, const FusedLayers& fuse
   const dnnl::convolution_forward::primitive_desc chosen(wanted, attributesOf(fused), engine_);
   const memory laid = inLayout(source, chosen.src_desc());
   const memory target = fused.sum ? at(fused.added) : memory(chosen.dst_desc(), engine_);
-  plan_.steps.push_back(
-      {dnnl::convolution_forward(chosen),
-       {{DNNL_ARG_SRC, laid},
-        {DNNL_ARG_WEIGHTS, constant(kernel, Tag::oihw, layer.weights, chosen.weights_desc())},
-        {DNNL_ARG_BIAS, constant({layer.channels[0]}, Tag::x, layer.bias, chosen.bias_desc())},
-        {DNNL_ARG_DST, target}}});
+  addStep<dnnl::convolution_forward>(
+      chosen,
+      {{DNNL_ARG_SRC, laid},
+       {DNNL_ARG_WEIGHTS, constant(kernel, Tag::oihw, layer.weights, chosen.weights_desc())},
+       {DNNL_ARG_BIAS, constant({layer.channels[0]}, Tag::x, layer.bias, chosen.bias_desc())},
+       {DNNL_ARG_DST, target}});
   keep(fused.output, target);
 }
 
-void Compiler::addEnlarge(const NetworkLayer& layer, const FusedLayers& fused) {
+void Compiler::addEnlarge(const NetworkLayer& layer) {
   const memory source = at(layer.inputs[0]);
   memory::dims out = source.get_desc().dims();
   for (std::size_t i = 0; i < 2; ++i) out[2 + i] *= layer.factor[i];
+  // A sum in place is left to addSum: where layouts differ oneDNN 2.6 gives wrong numbers.
   const dnnl::resampling_forward::desc wanted(dnnl::prop_kind::forward_inference,
                                               dnnl::algorithm::resampling_linear, source.get_desc(),
-                                              layoutFor(out, fused));
-  const dnnl::resampling_forward::primitive_desc chosen(wanted, attributesOf(fused), engine_);
-  const memory target = fused.sum ? at(fused.added) : memory(chosen.dst_desc(), engine_);
-  plan_.steps.push_back(
-      {dnnl::resampling_forward(chosen), {{DNNL_ARG_SRC, source}, {DNNL_ARG_DST, target}}});
-  keep(fused.output, target);
+                                              anyLayout(out));
+  const dnnl::resampling_forward::primitive_desc chosen(wanted, attributesOf({}), engine_);
+  const memory target(chosen.dst_desc(), engine_);
+  addStep<dnnl::resampling_forward>(chosen, {{DNNL_ARG_SRC, source}, {DNNL_ARG_DST, target}});
+  keep(layer.output, target);
 }
 
 void Compiler::addMaxPool(const NetworkLayer& layer) {
@@ -174,10 +183,9 @@ void Compiler::addMaxPool(const NetworkLayer& layer) {
                                            dnnl::algorithm::pooling_max, source.get_desc(),
                                            anyLayout(out), dims(layer.stride), dims(layer.kernel),
                                            dims(layer.pad_before), dims(layer.pad_after));
-  const dnnl::pooling_forward::primitive_desc chosen(wanted, engine_);
+  const dnnl::pooling_forward::primitive_desc chosen(wanted, attributesOf({}), engine_);
   const memory target(chosen.dst_desc(), engine_);
-  plan_.steps.push_back(
-      {dnnl::pooling_forward(chosen), {{DNNL_ARG_SRC, source}, {DNNL_ARG_DST, target}}});
+  addStep<dnnl::pooling_forward>(chosen, {{DNNL_ARG_SRC, source}, {DNNL_ARG_DST, target}});
   keep(layer.output, target);
 }
 
@@ -185,23 +193,24 @@ void Compiler::addRelu(const NetworkLayer& layer) {
   const memory source = at(layer.inputs[0]);
   const dnnl::eltwise_forward::desc wanted(dnnl::prop_kind::forward_inference,
                                            dnnl::algorithm::eltwise_relu, source.get_desc(), 0.0F);
-  const dnnl::eltwise_forward::primitive_desc chosen(wanted, engine_);
+  const dnnl::eltwise_forward::primitive_desc chosen(wanted, attributesOf({}), engine_);
   const memory target(chosen.dst_desc(), engine_);
-  plan_.steps.push_back(
-      {dnnl::eltwise_forward(chosen), {{DNNL_ARG_SRC, source}, {DNNL_ARG_DST, target}}});
+  addStep<dnnl::eltwise_forward>(chosen, {{DNNL_ARG_SRC, source}, {DNNL_ARG_DST, target}});
   keep(layer.output, target);
 }
 
 void Compiler::addSum(const NetworkLayer& layer) {
   const memory first = at(layer.inputs[0]);
+  if (first.get_desc().dims() != at(layer.inputs[1]).get_desc().dims()) {
+    throw dnnl::error(dnnl_invalid_arguments, kOtherSizes);
+  }
   const memory second = inLayout(at(layer.inputs[1]), first.get_desc());
   const dnnl::binary::desc wanted(dnnl::algorithm::binary_add, first.get_desc(), second.get_desc(),
                                   first.get_desc());
-  const dnnl::binary::primitive_desc chosen(wanted, engine_);
+  const dnnl::binary::primitive_desc chosen(wanted, attributesOf({}), engine_);
   const memory target(chosen.dst_desc(), engine_);
-  plan_.steps.push_back(
-      {dnnl::binary(chosen),
-       {{DNNL_ARG_SRC_0, first}, {DNNL_ARG_SRC_1, second}, {DNNL_ARG_DST, target}}});
+  addStep<dnnl::binary>(
+      chosen, {{DNNL_ARG_SRC_0, first}, {DNNL_ARG_SRC_1, second}, {DNNL_ARG_DST, target}});
   keep(layer.output, target);
 }
 
@@ -218,12 +227,9 @@ Plan Compiler::compile(const memory::dims& picture) {
         i += fused.count;
         break;
       }
-      case NetworkLayer::Kind::kEnlarge: {
-        const FusedLayers fused = fuseFollowing(graph_, i);
-        addEnlarge(layer, fused);
-        i += fused.count;
+      case NetworkLayer::Kind::kEnlarge:
+        addEnlarge(layer);
         break;
-      }
       case NetworkLayer::Kind::kMaxPool:
         addMaxPool(layer);
         break;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/dnn.hpp>
+#include <thread>
 
 namespace parkade {
 namespace {
@@ -78,6 +79,17 @@ TEST(OnnxNetwork, TakesSizesInTurns) {
   EXPECT_EQ(shapeOf(other), "1 x 5 x 16 x 20");
   EXPECT_EQ(largest(*network->run(small) - first), 0.0);
   EXPECT_EQ(largest(*network->run(large) - other), 0.0);
+}
+
+TEST_P(CompiledNetworks, RunInAnotherThreadThanTheyWereCompiledIn) {
+  const SizedNetwork& param = GetParam();
+  Result<OnnxNetwork> network = OnnxNetwork::read(param.path, "test");
+  ASSERT_TRUE(network) << network.error().message;
+  const cv::Mat picture = noise(param.height, param.width, 6);
+  const cv::Mat here = network->run(picture)->clone();
+  cv::Mat there;
+  std::thread([&] { there = network->run(picture)->clone(); }).join();
+  EXPECT_EQ(largest(here - there), 0.0);
 }
 
 TEST(OnnxNetwork, OtherLayersAreLeftToOpenCv) {
