@@ -21,7 +21,6 @@ using Tag = memory::format_tag;
 using Arguments = std::unordered_map<int, memory>;
 
 constexpr auto kFloat = memory::data_type::f32;
-constexpr const char* kOtherSizes = "values of different sizes are added";
 
 memory::dims dims(const std::array<int, 2>& pair) {
   return {pair[0], pair[1]};
@@ -39,6 +38,21 @@ memory::dims windows(memory::dims size, const NetworkLayer& layer) {
 
 memory::desc anyLayout(const memory::dims& size) {
   return {size, kFloat, Tag::any};
+}
+
+void requireSameSize(const memory::dims& a, const memory::dims& b) {
+  if (a != b) throw dnnl::error(dnnl_invalid_arguments, "values of different sizes are added");
+}
+
+dnnl::primitive_attr attributesOf(const FusedLayers& fused = {}) {
+  dnnl::post_ops after;
+  if (fused.sum) after.append_sum(1.0F);
+  if (fused.relu) after.append_eltwise(1.0F, dnnl::algorithm::eltwise_relu, 0.0F, 0.0F);
+  dnnl::primitive_attr attributes;
+  attributes.set_post_ops(after);
+  // The library's own belongs to the thread that compiles; another one may run the network.
+  attributes.set_scratchpad_mode(dnnl::scratchpad_mode::user);
+  return attributes;
 }
 
 // oneDNN takes as many threads as OpenMP gives to the calling thread.
@@ -78,12 +92,19 @@ class Compiler {
   void addMaxPool(const NetworkLayer& layer);
   void addRelu(const NetworkLayer& layer);
   void addSum(const NetworkLayer& layer);
-  [[nodiscard]] dnnl::primitive_attr attributesOf(const FusedLayers& fused) const;
   [[nodiscard]] memory::desc layoutFor(const memory::dims& size, const FusedLayers& fused) const;
   template <typename Primitive>
   void addStep(const typename Primitive::primitive_desc& chosen, Arguments arguments) {
     arguments.emplace(DNNL_ARG_SCRATCHPAD, memory(chosen.scratchpad_desc(), engine_));
     plan_.steps.push_back({Primitive(chosen), std::move(arguments)});
+  }
+  // A layer of one input, which is taken as it lies.
+  template <typename Primitive>
+  void addPlain(const NetworkLayer& layer, const typename Primitive::desc& wanted) {
+    const typename Primitive::primitive_desc chosen(wanted, attributesOf(), engine_);
+    const memory target(chosen.dst_desc(), engine_);
+    addStep<Primitive>(chosen, {{DNNL_ARG_SRC, at(layer.inputs[0])}, {DNNL_ARG_DST, target}});
+    keep(layer.output, target);
   }
   memory inLayout(const memory& value, const memory::desc& layout);
   memory constant(const memory::dims& size, Tag tag, const std::vector<float>& numbers,
@@ -91,7 +112,9 @@ class Compiler {
   void keep(int value, const memory& numbers) {
     values_[static_cast<std::size_t>(value)] = numbers;
   }
-  memory& at(int value) { return values_[static_cast<std::size_t>(value)]; }
+  [[nodiscard]] const memory& at(int value) const {
+    return values_[static_cast<std::size_t>(value)];
+  }
 
   const NetworkGraph& graph_;
   dnnl::engine engine_;
@@ -100,23 +123,10 @@ class Compiler {
   Plan plan_;
 };
 
-dnnl::primitive_attr Compiler::attributesOf(const FusedLayers& fused) const {
-  dnnl::post_ops after;
-  if (fused.sum) after.append_sum(1.0F);
-  if (fused.relu) after.append_eltwise(1.0F, dnnl::algorithm::eltwise_relu, 0.0F, 0.0F);
-  dnnl::primitive_attr attributes;
-  attributes.set_post_ops(after);
-  // The library's own belongs to the thread that compiles; another one may run the network.
-  attributes.set_scratchpad_mode(dnnl::scratchpad_mode::user);
-  return attributes;
-}
-
 memory::desc Compiler::layoutFor(const memory::dims& size, const FusedLayers& fused) const {
   if (!fused.sum) return anyLayout(size);
-  const memory::desc layout = values_[static_cast<std::size_t>(fused.added)].get_desc();
-  if (layout.dims() != size) {
-    throw dnnl::error(dnnl_invalid_arguments, kOtherSizes);
-  }
+  const memory::desc layout = at(fused.added).get_desc();
+  requireSameSize(layout.dims(), size);
   return layout;
 }
 
@@ -124,7 +134,7 @@ memory Compiler::inLayout(const memory& value, const memory::desc& layout) {
   if (value.get_desc() == layout) return value;
   memory other(layout, engine_);
   const dnnl::reorder::primitive_desc chosen(engine_, value.get_desc(), engine_, layout,
-                                             attributesOf({}));
+                                             attributesOf());
   addStep<dnnl::reorder>(chosen, {{DNNL_ARG_FROM, value}, {DNNL_ARG_TO, other}});
   return other;
 }
@@ -163,51 +173,36 @@ void Compiler::addConvolution(const NetworkLayer& layer, const FusedLayers& fuse
 }
 
 void Compiler::addEnlarge(const NetworkLayer& layer) {
-  const memory source = at(layer.inputs[0]);
-  memory::dims out = source.get_desc().dims();
+  const memory::desc source = at(layer.inputs[0]).get_desc();
+  memory::dims out = source.dims();
   for (std::size_t i = 0; i < 2; ++i) out[2 + i] *= layer.factor[i];
   // A sum in place is left to addSum: where layouts differ oneDNN 2.6 gives wrong numbers.
-  const dnnl::resampling_forward::desc wanted(dnnl::prop_kind::forward_inference,
-                                              dnnl::algorithm::resampling_linear, source.get_desc(),
-                                              anyLayout(out));
-  const dnnl::resampling_forward::primitive_desc chosen(wanted, attributesOf({}), engine_);
-  const memory target(chosen.dst_desc(), engine_);
-  addStep<dnnl::resampling_forward>(chosen, {{DNNL_ARG_SRC, source}, {DNNL_ARG_DST, target}});
-  keep(layer.output, target);
+  addPlain<dnnl::resampling_forward>(
+      layer, {dnnl::prop_kind::forward_inference, dnnl::algorithm::resampling_linear, source,
+              anyLayout(out)});
 }
 
 void Compiler::addMaxPool(const NetworkLayer& layer) {
-  const memory source = at(layer.inputs[0]);
-  const memory::dims out = windows(source.get_desc().dims(), layer);
-  const dnnl::pooling_forward::desc wanted(dnnl::prop_kind::forward_inference,
-                                           dnnl::algorithm::pooling_max, source.get_desc(),
-                                           anyLayout(out), dims(layer.stride), dims(layer.kernel),
-                                           dims(layer.pad_before), dims(layer.pad_after));
-  const dnnl::pooling_forward::primitive_desc chosen(wanted, attributesOf({}), engine_);
-  const memory target(chosen.dst_desc(), engine_);
-  addStep<dnnl::pooling_forward>(chosen, {{DNNL_ARG_SRC, source}, {DNNL_ARG_DST, target}});
-  keep(layer.output, target);
+  const memory::desc source = at(layer.inputs[0]).get_desc();
+  addPlain<dnnl::pooling_forward>(
+      layer, {dnnl::prop_kind::forward_inference, dnnl::algorithm::pooling_max, source,
+              anyLayout(windows(source.dims(), layer)), dims(layer.stride), dims(layer.kernel),
+              dims(layer.pad_before), dims(layer.pad_after)});
 }
 
 void Compiler::addRelu(const NetworkLayer& layer) {
-  const memory source = at(layer.inputs[0]);
-  const dnnl::eltwise_forward::desc wanted(dnnl::prop_kind::forward_inference,
-                                           dnnl::algorithm::eltwise_relu, source.get_desc(), 0.0F);
-  const dnnl::eltwise_forward::primitive_desc chosen(wanted, attributesOf({}), engine_);
-  const memory target(chosen.dst_desc(), engine_);
-  addStep<dnnl::eltwise_forward>(chosen, {{DNNL_ARG_SRC, source}, {DNNL_ARG_DST, target}});
-  keep(layer.output, target);
+  addPlain<dnnl::eltwise_forward>(
+      layer, {dnnl::prop_kind::forward_inference, dnnl::algorithm::eltwise_relu,
+              at(layer.inputs[0]).get_desc(), 0.0F});
 }
 
 void Compiler::addSum(const NetworkLayer& layer) {
   const memory first = at(layer.inputs[0]);
-  if (first.get_desc().dims() != at(layer.inputs[1]).get_desc().dims()) {
-    throw dnnl::error(dnnl_invalid_arguments, kOtherSizes);
-  }
+  requireSameSize(first.get_desc().dims(), at(layer.inputs[1]).get_desc().dims());
   const memory second = inLayout(at(layer.inputs[1]), first.get_desc());
   const dnnl::binary::desc wanted(dnnl::algorithm::binary_add, first.get_desc(), second.get_desc(),
                                   first.get_desc());
-  const dnnl::binary::primitive_desc chosen(wanted, attributesOf({}), engine_);
+  const dnnl::binary::primitive_desc chosen(wanted, attributesOf(), engine_);
   const memory target(chosen.dst_desc(), engine_);
   addStep<dnnl::binary>(
       chosen, {{DNNL_ARG_SRC_0, first}, {DNNL_ARG_SRC_1, second}, {DNNL_ARG_DST, target}});

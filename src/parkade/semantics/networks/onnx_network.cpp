@@ -10,6 +10,7 @@
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/dnn.hpp>
 #include <optional>
+#include <utility>
 
 #include "parkade/semantics/networks/compiled_network.hpp"
 
@@ -48,6 +49,7 @@ struct OnnxNetwork::Impl {
   std::optional<CompiledNetwork> compiled;
   // By height and width of the input: OpenCV is slow to change it.
   std::map<std::array<int, 2>, cv::dnn::Net> nets;
+  cv::dnn::Net unused;  // read already, for the first size
 
   Result<cv::Mat> forward(const cv::Mat& input) {
     if (compiled) return compiled->run(input);
@@ -55,7 +57,10 @@ struct OnnxNetwork::Impl {
       const QuietOpenCv quiet;
       const std::array<int, 2> size{input.size[2], input.size[3]};
       auto found = nets.find(size);
-      if (found == nets.end()) found = nets.emplace(size, readByOpenCv(path)).first;
+      if (found == nets.end()) {
+        if (unused.empty()) unused = readByOpenCv(path);
+        found = nets.emplace(size, std::exchange(unused, {})).first;
+      }
       found->second.setInput(input);
       return found->second.forward();
     } catch (const cv::Exception& error) {
@@ -68,10 +73,6 @@ OnnxNetwork::OnnxNetwork(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 OnnxNetwork::OnnxNetwork(OnnxNetwork&&) noexcept = default;
 OnnxNetwork& OnnxNetwork::operator=(OnnxNetwork&&) noexcept = default;
 OnnxNetwork::~OnnxNetwork() = default;
-
-const std::string& OnnxNetwork::path() const {
-  return impl_->path;
-}
 
 bool OnnxNetwork::isCompiled() const {
   return impl_->compiled.has_value();
@@ -90,7 +91,7 @@ Result<OnnxNetwork> OnnxNetwork::read(const std::string& path, const std::string
   }
   try {
     const QuietOpenCv quiet;
-    readByOpenCv(path);
+    impl->unused = readByOpenCv(path);
   } catch (const cv::Exception& error) {
     return Error{
         fmt::format("{}: OpenCV cannot read this ONNX file: {}", path, shortMessage(error))};

@@ -23,7 +23,6 @@ class OnnxNetwork {
   OnnxNetwork& operator=(OnnxNetwork&&) noexcept;
   ~OnnxNetwork();
 
-  [[nodiscard]] const std::string& path() const;
   [[nodiscard]] bool isCompiled() const;
 
   /// input: 1 x 3 x height x width numbers (CV_32F). What it gives is overwritten by the next run

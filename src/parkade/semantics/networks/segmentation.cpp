@@ -80,12 +80,9 @@ Status SegmentationNetwork::Impl::forward(const cv::Mat& bgr) {
 
 // Takes the mean of the logits and of those of the mirror image, mirrored back.
 Status SegmentationNetwork::Impl::addMirrored(const cv::Size& size) {
-  const int columns = input.size[3];
   mirrored.create(input.dims, input.size.p, CV_32F);
-  for (std::ptrdiff_t row = 0; row < static_cast<std::ptrdiff_t>(input.total()) / columns; ++row) {
-    const float* const from = input.ptr<float>() + row * columns;
-    std::reverse_copy(from, from + columns, mirrored.ptr<float>() + row * columns);
-  }
+  const cv::Size lines(input.size[3], 3 * input.size[2]);
+  cv::flip(cv::Mat(lines, CV_32F, input.data), cv::Mat(lines, CV_32F, mirrored.data), 1);
   cv::Mat mean = logits.clone();  // the next run writes where these are
   const Result<cv::Mat> other = net->run(mirrored);
   if (!other) return other.error();
