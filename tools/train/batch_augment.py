@@ -87,7 +87,7 @@ def shadow(draw, size):
 
 def cameras(draw, images):
     """As cameras that expose and balance colours each for itself, stitched with seams: pictures before, behind and
-    beside the car part along rays from its corners."""
+    beside the car part along rays from its corners. Some overexpose."""
     u, v = coordinates(images.shape[2:], draw.device)
     x = about(draw, u, 40)
     y = about(draw, v, 40)
@@ -97,8 +97,9 @@ def cameras(draw, images):
     ahead, right = torch.sigmoid(-y / soft), torch.sigmoid(x / soft)
     parts = [ends * ahead, ends * (1 - ahead), (1 - ends) * right, (1 - ends) * (1 - right)]
     strength = draw.uniform(0.1, 0.4)
-    return sum(part * (images * torch.exp(strength * draw.normal(0, 1) + draw.normal(0, 0.05, 3)) +
-                       20 * strength * draw.normal(0, 1)) for part in parts)
+    gain = lambda: torch.exp(strength * draw.normal(0, 1) + draw.normal(0, 0.05, 3)) * torch.where(  # noqa: E731
+        draw.chance(0.06), draw.uniform(1.5, 4.0), 1.0)
+    return sum(part * (images * gain() + 20 * strength * draw.normal(0, 1)) for part in parts)
 
 
 def shade(draw, images):
@@ -191,10 +192,10 @@ def repaint(draw, images, labels, floor, lines):
     around = blurred(images * bare, soft, reach=8) / blurred(bare, soft, reach=8).clamp(min=1e-3)
     mask = blurred((labels == lines).float()[:, None], 0.125 * soft, reach=2)
     there = smooth_field(len(images), images.shape[2:], 2, draw.device) > draw.normal(-0.5, 0.7)
-    colours = torch.tensor(PAINTS, device=draw.device)
-    chosen = torch.multinomial(torch.tensor([0.55, 0.15, 0.15, 0.15], device=draw.device),
-                               len(images), replacement=True)
-    tint = colours[chosen][:, :, None, None] ** draw.uniform(0.5, 1.0)
+    shares = torch.tensor([0.55, 0.15, 0.15, 0.15])
+    chosen = torch.multinomial(shares, len(images), replacement=True)
+    colours = torch.tensor(PAINTS)[chosen].to(draw.device, non_blocking=True)
+    tint = colours[:, :, None, None] ** draw.uniform(0.5, 1.0)
     grey = images.mean(1, keepdim=True)
     tinted = grey * tint * torch.exp(draw.normal(0, 0.15, 3)) * draw.uniform(0.7, 1.2)
     paint = torch.where(draw.chance(0.7), tinted, images)
@@ -208,9 +209,10 @@ def repaint(draw, images, labels, floor, lines):
 
 def on_some(share, change, images, *others):
     """change(images, *others) for that share of the pictures; the others stay."""
-    chosen = (torch.rand(len(images), device=images.device) < share).nonzero()[:, 0]
+    chosen = (torch.rand(len(images)) < share).nonzero()[:, 0]  # not on the device, which would be waited for
     if len(chosen) == 0:
         return images
+    chosen = chosen.to(images.device, non_blocking=True)
     part = change(Draw(len(chosen), images.device), images[chosen], *(one[chosen] for one in others))
     return images.index_copy(0, chosen, part)
 
@@ -244,13 +246,13 @@ def changed(draw, images, labels, floor):
         images = on_some(0.4, lambda d, x, y: new_floor(d, x, y, floor), images, labels)
     images = on_some(0.09, lambda d, x: x * floor_texture(d, size), images)
     if floor is not None:
-        images = on_some(0.2, lambda d, x, y: plates(d, x, y, floor), images, labels)
+        images = on_some(0.3, lambda d, x, y: plates(d, x, y, floor), images, labels)
     images = on_some(0.25, lambda d, x: x * shadow(d, size), images)
     if floor is not None:
         images = on_some(0.3, shade, images)
     field = smooth_field(len(images), size, int(torch.randint(1, 4, (1,))), images.device)
     images = images * torch.exp(torch.where(draw.chance(0.3), 0.2 * field, 0.0))
-    images = on_some(0.3, glare, images)
+    images = on_some(0.4, glare, images)
     if floor is not None:
         images = on_some(0.35, cameras, images)
     images = new_tones(draw, images)

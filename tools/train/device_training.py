@@ -36,17 +36,17 @@ class Mean:
     """Exponential mean of the weights over about so many steps, which is what gets exported."""
 
     def __init__(self, network, steps):
-        self.decay, self.network = 1.0 - 1.0 / steps, network
-        self.state = {k: v.detach().clone() for k, v in network.state_dict().items()}
+        self.decay = 1.0 - 1.0 / steps
+        now = network.state_dict()
+        self.state = {k: v.detach().clone() for k, v in now.items()}
+        floats = [k for k, v in now.items() if v.dtype.is_floating_point]
+        self.now, self.averages = [now[k] for k in floats], [self.state[k] for k in floats]
 
     @torch.no_grad()
     def update(self, step):
         decay = min(self.decay, (1 + step) / (10 + step))
-        now = self.network.state_dict()
-        floats = [k for k, v in now.items() if v.dtype.is_floating_point]
-        averages = [self.state[k] for k in floats]
-        torch._foreach_mul_(averages, decay)
-        torch._foreach_add_(averages, [now[k] for k in floats], alpha=1.0 - decay)
+        torch._foreach_mul_(self.averages, decay)
+        torch._foreach_add_(self.averages, self.now, alpha=1.0 - decay)
 
 
 def add_learning(parser):
@@ -74,26 +74,76 @@ def check(parser, arguments):
             parser.error(f"--data {folder}: no such folder")
 
 
-def learn(a, clock, network, make, loss_of, take, judge, path, said_too):
-    """Until the time is spent. make(): a network such as this one on its device; loss_of(): of the next batch;
-    take(): takes in what was drawn since; judge(best, done): what to say of the mean of the weights, which
-    goes to path with what said_too holds."""
+class Step:
+    """One step of learning: the loss of a batch, its gradients, and what the optimiser makes of them. loss_of(*batch) is
+    recorded once on a graphics processor and replayed with the rest (a CUDA graph): to launch its thousand small
+    kernels one by one takes longer than they do. It must not wait for the device, and batches must be alike."""
+
+    def __init__(self, a, network, loss_of, record):
+        self.network, self.loss_of, self.graph = network, loss_of, None
+        self.record = record and torch.device(a.device).type == "cuda"
+        rate = torch.tensor(a.rate, device=a.device) if self.record else a.rate
+        self.optimiser = torch.optim.AdamW(network.parameters(), lr=rate, weight_decay=1e-2,
+                                           capturable=self.record)
+
+    def _once(self, batch):
+        loss = self.loss_of(*batch)
+        loss.backward()
+        torch.nn.utils.clip_grad_norm_(self.network.parameters(), 5.0)
+        self.optimiser.step()
+        return loss.detach()
+
+    def _record(self, batch):
+        self.batch = [part.clone() for part in batch]
+        aside = torch.cuda.Stream()
+        aside.wait_stream(torch.cuda.current_stream())
+        with torch.cuda.stream(aside):  # what libraries choose and keep at first must not be recorded
+            for _ in range(3):
+                self.optimiser.zero_grad(set_to_none=True)
+                self._once(self.batch)
+        torch.cuda.current_stream().wait_stream(aside)
+        self.optimiser.zero_grad(set_to_none=True)
+        graph = torch.cuda.CUDAGraph()
+        with torch.cuda.graph(graph):
+            self.loss = self._once(self.batch)
+        self.graph = graph
+
+    def __call__(self, batch, rate):
+        """The loss, on the device."""
+        for group in self.optimiser.param_groups:
+            if self.record:
+                group["lr"].fill_(rate)
+            else:
+                group["lr"] = rate
+        if not self.record:
+            self.optimiser.zero_grad(set_to_none=True)
+            return self._once(batch)
+        if self.graph is None:
+            try:
+                self._record(batch)
+            except RuntimeError as error:
+                print(f"cannot be recorded, goes on without: {error}", flush=True)
+                self.record = False
+                return self(batch, rate)
+        for kept, part in zip(self.batch, batch):
+            kept.copy_(part)
+        self.graph.replay()
+        return self.loss.clone()
+
+
+def learn(a, clock, network, make, next_batch, loss_of, take, judge, path, said_too, record=True):
+    """Until the time is spent. make(): a network such as this one on its device; next_batch(): tensors, and
+    loss_of(*tensors) the loss of them, recorded if that can be (Step); take(): takes in what was drawn since;
+    judge(best, done): what to say of the mean of the weights, which goes to path with what said_too holds."""
     log = open(os.path.splitext(path)[0] + ".txt", "a", buffering=1)
-    optimiser = torch.optim.AdamW(network.parameters(), lr=a.rate, weight_decay=1e-2)
+    learn_from = Step(a, network, loss_of, record)
     mean = Mean(network, a.mean_steps)
     step, losses, polled, said, done = 0, [], time.time(), time.time(), 0.0
     while done < 1.0:
         done = clock.done() if step % 20 == 0 else done
-        for group in optimiser.param_groups:
-            group["lr"] = rate_at(done, step, a.rate, a.warm_up)
-        loss = loss_of()
-        optimiser.zero_grad(set_to_none=True)
-        loss.backward()
-        torch.nn.utils.clip_grad_norm_(network.parameters(), 5.0)
-        optimiser.step()
+        losses.append(learn_from(next_batch(), rate_at(done, step, a.rate, a.warm_up)))
         step += 1
         mean.update(step)
-        losses.append(loss.detach())
         if time.time() - polled > 10 and done < 0.9:
             polled = time.time()
             take()

@@ -13,14 +13,15 @@ from torch.nn import functional as F
 
 # What each network labels (NETWORKS in classes.py).
 PICTURES = {"bev": "bev", "bev-deep": "bev", "raw": "raw", "raw-deep": "raw"}
-WIDTHS = {"bev": [16, 32, 64, 96, 128], "raw": [16, 24, 48, 64, 96]}
+WIDTHS = {"bev": [16, 32, 64, 96, 128], "bev-deep": [16, 32, 64, 96, 128],
+          "raw": [16, 24, 48, 64, 96], "raw-deep": [16, 32, 48, 64, 96]}
 # Channels, kernel and stride of the first convolution. One of 6 and 4 sees twice the pixels that are labelled
 # (PX_PER_LABEL and size in classes.py), and begins as one of 3 and 2 for their means.
 STEMS = {"bev": (16, 3, 2), "raw": (16, 3, 2)}
 # Residual blocks behind each level. Where pictures are small they cost little and see far: what is worn or
 # in glare is told by what stands around.
-DEPTHS = {"bev": [0, 0, 0, 0, 0], "bev-deep": [0, 0, 0, 2, 1], "raw": [0, 0, 0, 0, 0],
-          "raw-deep": [0, 0, 1, 2, 2]}
+DEPTHS = {"bev": [0, 0, 0, 0, 0], "bev-deep": [1, 1, 1, 2, 1], "raw": [0, 0, 0, 0, 0],
+          "raw-deep": [1, 1, 1, 2, 2]}
 
 
 class ConvBlock(nn.Sequential):
@@ -79,7 +80,7 @@ class UNet(nn.Module):
 
 def make_network(name, num_classes):
     pictures = PICTURES[name]
-    return UNet(num_classes, STEMS[pictures], WIDTHS[pictures], DEPTHS[name])
+    return UNet(num_classes, STEMS[pictures], WIDTHS[name], DEPTHS[name])
 
 
 def name_of(state):

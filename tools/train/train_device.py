@@ -50,6 +50,36 @@ def segmentation_loss(logits, labels, weight):
     return entropy + DICE * (present * dice).sum() / present.sum().clamp(min=1.0)
 
 
+class Echo:
+    """Batches of pictures that were changed lately, each of which is seen so many times (data echoing, Choi et al. 2019):
+    to change them takes longer than to learn from them. next_batch(): images and labels, changed anew."""
+
+    def __init__(self, next_batch, times, views, kept=24):
+        self.next_batch, self.times, self.views, self.kept = next_batch, times, views, kept
+        self.images, self.labels, self.calls, self.filled = None, None, 0, 0
+
+    def _add(self, images, labels):
+        if self.images is None:
+            self.images = images.new_empty((self.kept, *images.shape))
+            self.labels = torch.empty((self.kept, *labels.shape), dtype=torch.uint8, device=labels.device)
+        self.images[self.filled % self.kept].copy_(images)
+        self.labels[self.filled % self.kept].copy_(labels)
+        self.filled += 1
+
+    @torch.no_grad()
+    def __call__(self):
+        while self.filled < 4 or self.filled * self.times <= self.calls:
+            self._add(*self.next_batch())
+        self.calls += 1
+        size = self.images.shape[1]
+        chosen = torch.randint(min(self.filled, self.kept) * size, (size,), device=self.images.device)
+        images, labels = self.images.flatten(0, 1)[chosen], self.labels.flatten(0, 1)[chosen]
+        for side in (1,) if self.views else (0, 1):
+            if torch.rand(1) < 0.5:
+                images, labels = images.flip(2 + side), labels.flip(1 + side)
+        return images.contiguous(memory_format=torch.channels_last), labels.long()
+
+
 @torch.no_grad()
 def validate(network, data, device, limit):
     network.eval()
@@ -76,6 +106,7 @@ def main():
     parser.add_argument("--begin-with", type=int, default=200, help="pictures to wait for at first [200]")
     parser.add_argument("--readers", type=int, default=2, help="processes that read pictures [2]")
     parser.add_argument("--warm-start", help="a state file or an exported .onnx to begin with")
+    parser.add_argument("--echo", type=int, default=1, help="times that each changed picture is learnt from [1]")
     add_learning(parser)
     a = parser.parse_args()
     check(parser, a)
@@ -106,17 +137,17 @@ def main():
     weight = class_weights(data.pixels).to(a.device)
 
     def take():
-        nonlocal weight
         data.take(reader.poll())
-        weight = class_weights(data.pixels).to(a.device)
+        weight.copy_(class_weights(data.pixels))
 
-    def loss_of():
-        with torch.no_grad():
-            images, labels = data.batch(a.batch)
-            images, labels = transform(images, labels, IGNORE, 0.6, pictures == "raw")
-            images = (augment(images, labels, floor, lines, a.plain) - MEAN) * SCALE
-            images = images.contiguous(memory_format=torch.channels_last)
-        with torch.autocast(torch.device(a.device).type, dtype=torch.bfloat16):
+    @torch.no_grad()
+    def next_batch():
+        images, labels = data.batch(a.batch)
+        images, labels = transform(images, labels, IGNORE, 0.6, pictures == "raw")
+        return (augment(images, labels, floor, lines, a.plain) - MEAN) * SCALE, labels
+
+    def loss_of(images, labels):
+        with torch.autocast(torch.device(a.device).type, dtype=torch.bfloat16, cache_enabled=False):
             logits = network(images)
         return segmentation_loss(logits, labels, weight)
 
@@ -125,7 +156,7 @@ def main():
         return (f"{data.images.count} pictures  mean IoU {np.nanmean(iou):.3f} of {count}  "
                 f"{table(classes, iou)}")
 
-    learn(a, clock, network, make, loss_of, take, judge,
+    learn(a, clock, network, make, Echo(next_batch, a.echo, pictures == "raw"), loss_of, take, judge,
           os.path.join(a.out, a.network + ".pt"), {"name": a.network, "classes": classes})
     reader.pool.shutdown(wait=False, cancel_futures=True)
     return 0

@@ -144,11 +144,13 @@ def main():
         settle(network, [(data.batch(a.batch)[0] - MEAN) * SCALE for _ in range(8)])
     of_drawn = int(a.rendered_share * a.batch)
 
-    def loss_of():
-        with torch.no_grad():
-            both = [drawn.batch(of_drawn), data.batch(a.batch - of_drawn)]
-            patches, symbols, lengths = (torch.cat(pair) for pair in zip(*both))
-            patches = (changed(patches) - MEAN) * SCALE
+    @torch.no_grad()
+    def next_batch():
+        both = [drawn.batch(of_drawn), data.batch(a.batch - of_drawn)]
+        patches, symbols, lengths = (torch.cat(pair) for pair in zip(*both))
+        return (changed(patches) - MEAN) * SCALE, symbols, lengths
+
+    def loss_of(patches, symbols, lengths):
         with torch.autocast(torch.device(a.device).type, dtype=torch.bfloat16):
             logits = network(patches)
         log_p = F.log_softmax(logits.float()[:, :, 0], 1).permute(2, 0, 1)
@@ -156,9 +158,9 @@ def main():
         return F.ctc_loss(log_p, symbols, steps, lengths, reduction="sum",
                           zero_infinity=True) / a.batch
 
-    learn(a, clock, network, make, loss_of, lambda: data.take(reader.poll()),
+    learn(a, clock, network, make, next_batch, loss_of, lambda: data.take(reader.poll()),
           lambda best, done: f"{data.patches.count} patches  {report(best, data.test, a.device)}",
-          os.path.join(a.out, "text.pt"), {})
+          os.path.join(a.out, "text.pt"), {}, record=False)  # the loss asks the device for lengths
     reader.pool.shutdown(wait=False, cancel_futures=True)
     return 0
 
