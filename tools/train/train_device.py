@@ -77,7 +77,7 @@ class Echo:
         for side in (1,) if self.views else (0, 1):
             if torch.rand(1) < 0.5:
                 images, labels = images.flip(2 + side), labels.flip(1 + side)
-        return images.contiguous(memory_format=torch.channels_last), labels.long()
+        return images, labels.long()
 
 
 @torch.no_grad()
@@ -148,7 +148,7 @@ def main():
 
     def loss_of(images, labels):
         with torch.autocast(torch.device(a.device).type, dtype=torch.bfloat16, cache_enabled=False):
-            logits = network(images)
+            logits = network(images.contiguous(memory_format=torch.channels_last))
         return segmentation_loss(logits, labels, weight)
 
     def judge(best, done):
@@ -156,7 +156,8 @@ def main():
         return (f"{data.images.count} pictures  mean IoU {np.nanmean(iou):.3f} of {count}  "
                 f"{table(classes, iou)}")
 
-    learn(a, clock, network, make, Echo(next_batch, a.echo, pictures == "raw"), loss_of, take, judge,
+    feed = Echo(next_batch, a.echo, pictures == "raw") if a.echo > 1 else next_batch
+    learn(a, clock, network, make, feed, loss_of, take, judge,
           os.path.join(a.out, a.network + ".pt"), {"name": a.network, "classes": classes})
     reader.pool.shutdown(wait=False, cancel_futures=True)
     return 0
