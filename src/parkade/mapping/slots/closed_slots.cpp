@@ -11,6 +11,7 @@
 
 #include "parkade/geometry/se2.hpp"
 #include "parkade/mapping/map_check.hpp"
+#include "parkade/mapping/slots/floor_before.hpp"
 #include "parkade/mapping/slots/slot_axes.hpp"
 
 namespace parkade::slot_rows {
@@ -172,23 +173,6 @@ class ClosedSlotFinder {
     return pairs;
   }
 
-  // Share of the ground before a side, away from the middle, that is known floor.
-  [[nodiscard]] double floorBefore(const Vector2d& left, const Vector2d& right,
-                                   const Vector2d& middle) const {
-    constexpr int kSteps = 10;
-    constexpr double kReach = 2.5;  // m
-    const Vector2d out = (0.5 * (left + right) - middle).normalized();
-    int floor = 0;
-    for (int i = 1; i < kSteps; ++i) {
-      for (int k = 1; k <= kSteps; ++k) {
-        const Vector2d p = left + (right - left) * i / kSteps + out * kReach * k / kSteps;
-        const GridCell cell = grid_.at(GridLayer::kParkingLines, grid_.cellOf(p));
-        floor += cell.known() && cell.semantic_class == SemanticClass::kFloor ? 1 : 0;
-      }
-    }
-    return static_cast<double>(floor) / ((kSteps - 1) * kSteps);
-  }
-
   [[nodiscard]] bool isPainted(const Vector2d& from, const Vector2d& to) const {
     constexpr double kContrast = 0.5;
     constexpr double kSeen = 0.6;
@@ -210,7 +194,7 @@ class ClosedSlotFinder {
       if (!isPainted(c[k], c[(k + 1) % 4])) return std::nullopt;
     }
     const Vector2d middle = 0.5 * (c[0] + c[2]);
-    if (floorBefore(c[2], c[3], middle) > floorBefore(c[0], c[1], middle)) {
+    if (floorBefore(grid_, c[2], c[3], middle) > floorBefore(grid_, c[0], c[1], middle)) {
       c = {c[2], c[3], c[0], c[1]};
     }
     const SlotEvidence evidence = gatherEvidence(grid_, c);

@@ -18,18 +18,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector2i;
 
-// Of slots that are wider than usual ones by far; of a garage without any as the norm has it.
-double wideFrontOf(const std::vector<MapSlot>& told) {
-  constexpr double kNorm = 3.5;  // m
-  std::vector<double> fronts;
-  for (const MapSlot& slot : told) {
-    if (slot.shape != SlotShape::kPerpendicular) continue;
-    const double front = (slot.corners[1] - slot.corners[0]).norm();
-    if (front > kLeastWideFront && front < kMostWideFront) fronts.push_back(front);
-  }
-  return fronts.empty() ? kNorm : median(std::move(fronts));
-}
-
 class ReservedSlotFinder {
  public:
   ReservedSlotFinder(const std::vector<MapSlot>& told, const std::vector<Vector2d>& pillars,
@@ -152,6 +140,17 @@ class ReservedSlotFinder {
 };
 
 }  // namespace
+
+double wideFrontOf(const std::vector<MapSlot>& told) {
+  constexpr double kNorm = 3.5;  // m
+  std::vector<double> fronts;
+  for (const MapSlot& slot : told) {
+    if (slot.shape != SlotShape::kPerpendicular) continue;
+    const double front = (slot.corners[1] - slot.corners[0]).norm();
+    if (front > kLeastWideFront && front < kMostWideFront) fronts.push_back(front);
+  }
+  return fronts.empty() ? kNorm : median(std::move(fronts));
+}
 
 std::vector<Vector2d> findPaintedSigns(const LayeredGrid& grid) {
   constexpr double kLeast = 0.85;  // m^2

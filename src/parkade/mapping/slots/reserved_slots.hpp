@@ -19,6 +19,10 @@ namespace parkade::slot_rows {
 /// number is (0.85 m^2). World frame. None where the grid is too wide for a picture of it.
 std::vector<Eigen::Vector2d> findPaintedSigns(const LayeredGrid& grid);
 
+/// m, between the entrance corners of slots that are wider than usual ones by far; of a garage
+/// without any as the norm has it.
+double wideFrontOf(const std::vector<MapSlot>& told);
+
 /// For each sign in the depth of a row, not in a slot told, one wide slot with the sign in its
 /// middle: as wide as the sides' paint has it, where none shows as the garage's others.
 /// docs/math/slots.md.

@@ -13,6 +13,7 @@
 #include "parkade/mapping/slots/bay_ends.hpp"
 #include "parkade/mapping/slots/closed_slots.hpp"
 #include "parkade/mapping/slots/lined_slots.hpp"
+#include "parkade/mapping/slots/lone_signs.hpp"
 #include "parkade/mapping/slots/reserved_slots.hpp"
 #include "parkade/mapping/slots/row_alignment.hpp"
 #include "parkade/mapping/slots/row_evidence.hpp"
@@ -110,6 +111,8 @@ class RowCompleter {
         slot_rows::findLinedSlots(knownWith(result.added), pillars_, grid_, likelihood_, options_),
         result.added);
     takeBest(slot_rows::findClosedSlots(knownWith(result.added), grid_, likelihood_, options_),
+             result.added);
+    takeBest(slot_rows::findLoneSignSlots(knownWith(result.added), grid_, likelihood_, options_),
              result.added);
     if (result.added.size() > known) fillGaps(result.added);
     result.replaced = replaced_;
