@@ -202,7 +202,7 @@ std::shared_ptr<PaperBenchOptions> addPaperBenchOptions(CLI::App& bench) {
       ->capture_default_str();
   bench.add_flag("--quick", o->quick,
                  "Two routes, 30 s each, one sample per pixel, four methods (unless set)");
-  bench.add_flag("--fast", o->fast, "One sample per pixel instead of 2 x 2");
+  bench.add_flag("--fast", o->fast, "One sample per pixel, 2 x 2 only where a surface ends");
   bench.add_option("--duration", o->duration_s, "Cut every drive after S seconds; 0: whole")
       ->type_name("S")
       ->check(notNegative());

@@ -307,7 +307,8 @@ void addBenchSemantics(CLI::App& bench, int& exit_code) {
                    "Score slots' corners on marked real pictures instead: 10 m wide, with "
                    "annotations.txt (docs/networks.md)")
       ->type_name("DIR");
-  command->add_flag("--fast", arguments->fast, "One sample per pixel instead of 2 x 2");
+  command->add_flag("--fast", arguments->fast,
+                    "One sample per pixel, 2 x 2 only where a surface ends");
   command->add_option("--threads", arguments->threads, "Threads that draw [all processors]")
       ->check(CLI::Range(1, 256));
   command->add_option("--set", arguments->settings, "An option below, as frames=20")

@@ -101,7 +101,7 @@ void addSpecOptions(CLI::App& command, Arguments& arguments) {
            "Sensors: avp6, nuscenes6, avm4 or a rig.yaml [avp6]");
   command.add_flag_callback(
       "--fast", [&arguments] { arguments.values.emplace_back("fast", "on"); },
-      "One sample per pixel instead of 2 x 2");
+      "One sample per pixel, 2 x 2 only where a surface ends");
   addField(command, arguments, "--motion-blur", "motion_blur", "N",
            "Sub-frames within an exposure [1: none]");
   addField(command, arguments, "--noise", "noise", "on|off", "Errors of all sensors [on]");

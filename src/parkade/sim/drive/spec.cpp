@@ -35,7 +35,7 @@ void SimSpec::visit(OptionVisitor& v) {
   v.field("people", people, "count", "People who walk about.", 0, 100);
   v.field("speed_kmh", speed_kmh, "km/h", "Highest speed of the own car.", 2.0, 30.0);
   v.field("rig", rig, "Sensors of the car: a preset (avp6, nuscenes6, avm4) or a rig.yaml file.");
-  v.field("fast", fast, "One sample per pixel instead of 2 x 2.");
+  v.field("fast", fast, "One sample per pixel, 2 x 2 only where a surface ends.");
   v.field("motion_blur", motion_blur, "count", "Sub-frames within an exposure; 1: none.", 1, 64);
   v.field("noise", noise, "Noise and errors of cameras, inertial unit and wheels.");
   v.field("load", load, "Static pitch and roll of passengers and luggage, drawn from the seed.");

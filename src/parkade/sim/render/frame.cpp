@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
+#include "parkade/sim/render/frame_edges.hpp"
 #include "parkade/sim/render/parallel.hpp"
 #include "parkade/sim/render/reflection.hpp"
 #include "parkade/sim/render/tile_tracer.hpp"
@@ -56,8 +58,11 @@ class FrameTracer {
         rays_(setup, table, T_world_cam),
         samples_(table.grid() * table.grid()) {}
 
-  void traceTile(int tile, TileSamples& out) const { rays_.trace(tile, out); }
-  void shadeTile(int tile, const TileSamples& in, Radiance& out, ReflectionBuffer* mirror) const;
+  void traceTile(int tile, PixelBlocks blocks, TileSamples& out) const {
+    rays_.trace(tile, blocks, out);
+  }
+  void shadeTile(int tile, PixelBlocks blocks, const TileSamples& in, Radiance& out,
+                 ReflectionBuffer* mirror) const;
 
  private:
   [[nodiscard]] const Eigen::Vector3f& eye() const { return rays_.eye(); }
@@ -163,7 +168,7 @@ void FrameTracer::finishPixel(const TileWork::Pixel& pixel, int first_group, Til
   }
 }
 
-void FrameTracer::shadeTile(int tile, const TileSamples& in, Radiance& out,
+void FrameTracer::shadeTile(int tile, PixelBlocks blocks, const TileSamples& in, Radiance& out,
                             ReflectionBuffer* mirror) const {
   const int left = tile % table_.tilesX() * kTile;
   const int top = tile / table_.tilesX() * kTile;
@@ -173,7 +178,7 @@ void FrameTracer::shadeTile(int tile, const TileSamples& in, Radiance& out,
     const int block = i / (kBlock * kBlock);
     const int in_x = block % (kTile / kBlock) * kBlock + i % kBlock;
     const int in_y = block / (kTile / kBlock) * kBlock + i / kBlock % kBlock;
-    if (left + in_x >= out.width || top + in_y >= out.height) {
+    if (left + in_x >= out.width || top + in_y >= out.height || !isIn(blocks, in_x, in_y)) {
       continue;
     }
     TileWork::Pixel& pixel = work.pixels[static_cast<std::size_t>(work.pixel_count++)];
@@ -216,7 +221,7 @@ void FrameTracer::traceMirrors(int tile, const std::vector<MirrorRay>& floor,
 }  // namespace
 
 void traceFrame(const FrameSetup& setup, const RayTable& table, const SE3& T_world_cam,
-                Radiance& out) {
+                Radiance& out, const RayTable* edges) {
   out.width = table.width();
   out.height = table.height();
   out.pixels.assign(static_cast<std::size_t>(out.width) * out.height, Eigen::Vector3f::Zero());
@@ -225,14 +230,22 @@ void traceFrame(const FrameSetup& setup, const RayTable& table, const SE3& T_wor
   if (setup.reflections) {
     mirror.reset(out.width, out.height);
   }
+  ReflectionBuffer* const reflections = setup.reflections ? &mirror : nullptr;
   const FrameTracer tracer(setup, table, T_world_cam);
+  std::optional<FrameTracer> finer;
+  if (edges != nullptr) finer.emplace(setup, *edges, T_world_cam);
   parallelFor(setup.threads, static_cast<std::size_t>(table.tilesY()), [&](std::size_t row) {
     const FlushDenormals flush;
     thread_local TileSamples samples;
     for (int i = 0; i < table.tilesX(); ++i) {
       const int tile = static_cast<int>(row) * table.tilesX() + i;
-      tracer.traceTile(tile, samples);
-      tracer.shadeTile(tile, samples, out, setup.reflections ? &mirror : nullptr);
+      tracer.traceTile(tile, kAllBlocks, samples);
+      const PixelBlocks fine =
+          finer ? findEdges(samples, *setup.shader, *setup.moment) : PixelBlocks{0};
+      tracer.shadeTile(tile, ~fine, samples, out, reflections);
+      if (fine == 0) continue;
+      finer->traceTile(tile, fine, samples);
+      finer->shadeTile(tile, fine, samples, out, reflections);
     }
   });
   if (setup.reflections) {

@@ -33,8 +33,10 @@ BakedLight timedBake(const Scene& scene, const StaticTracer& tracer, const Rende
 struct Renderer::CameraTables {
   Camera camera;
   RayTable picture;
+  std::optional<RayTable> edges;          ///< where the picture has one sample per pixel
   std::optional<RayTable> other_centers;  ///< where the picture's samples are not the centers
   [[nodiscard]] const RayTable& centers() const { return other_centers ? *other_centers : picture; }
+  [[nodiscard]] const RayTable* finer() const { return edges ? &*edges : nullptr; }
   std::vector<RayTable> sub_frames;
   std::vector<float> lens_share;
 };
@@ -55,7 +57,8 @@ int Renderer::addCamera(const Camera& camera) {
   const int grid = options_.fast ? 1 : 2;
   const int threads = options_.threads;
   auto tables = std::make_unique<CameraTables>(
-      CameraTables{camera, RayTable(camera, grid, {0.0, 0.0}, threads), {}, {}, {}});
+      CameraTables{camera, RayTable(camera, grid, {0.0, 0.0}, threads), {}, {}, {}, {}});
+  if (grid == 1) tables->edges.emplace(camera, 2, Eigen::Vector2d(0.0, 0.0), threads);
   if (grid > 1) tables->other_centers.emplace(camera, 1, Eigen::Vector2d(0.0, 0.0), threads);
   tables->lens_share = sensor_.lensShare(tables->picture.axisCosines());
   if (options_.sensor.motion_blur > 1) {
@@ -91,14 +94,16 @@ FrameSetup Renderer::setupFor(const Moment& moment) const {
 
 Radiance Renderer::renderRadiance(int camera, const SE3& T_world_cam, const Moment& moment) const {
   Radiance radiance;
-  traceFrame(setupFor(moment), tables(camera).picture, T_world_cam, radiance);
+  traceFrame(setupFor(moment), tables(camera).picture, T_world_cam, radiance,
+             tables(camera).finer());
   return radiance;
 }
 
 cv::Mat Renderer::render(int camera, const SE3& T_world_cam, const Moment& moment,
                          std::uint64_t frame) const {
   thread_local Radiance radiance;  // kept: fresh memory costs a page fault per 4 kB
-  traceFrame(setupFor(moment), tables(camera).picture, T_world_cam, radiance);
+  traceFrame(setupFor(moment), tables(camera).picture, T_world_cam, radiance,
+             tables(camera).finer());
   return sensor_.expose(radiance, sensor_.meter(radiance), tables(camera).lens_share,
                         hash64(static_cast<std::uint64_t>(camera), frame), options_.threads);
 }

@@ -26,7 +26,7 @@ struct RenderOptions {
   BakeOptions bake;
   SensorOptions sensor;
   void visit(OptionVisitor& v) {
-    v.field("fast", fast, "One sample per pixel instead of 2 x 2.");
+    v.field("fast", fast, "One sample per pixel, 2 x 2 only where a surface ends.");
     v.field("reflections", reflections, "Mirror images in glossy floors and cars.");
     v.field("threads", threads, "count", "Threads per picture; the pictures do not depend on it.",
             1, 256);

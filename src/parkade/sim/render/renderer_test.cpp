@@ -68,6 +68,40 @@ TEST(Renderer, GivesTheSameBytesForAnyNumberOfThreads) {
   }
 }
 
+// Where a surface ends a pixel shows its share of both, also with one sample per pixel elsewhere;
+// but for pixels at the borders of tiles, of which each looks at its own alone.
+TEST(Renderer, FastPicturesHaveSmoothEdges) {
+  Radiance drawn[2];
+  TruthImages truth;
+  for (const bool fast : {false, true}) {
+    RenderOptions options;
+    options.fast = fast;
+    options.reflections = false;
+    Renderer renderer(busyHall(), options);
+    const int camera = renderer.addCamera(smallCamera());
+    const auto moment = renderer.moment(0.4, std::nullopt);
+    drawn[fast ? 1 : 0] = renderer.renderRadiance(camera, test::lookAlongX(0.1), *moment);
+    truth = renderer.renderTruth(camera, test::lookAlongX(0.1), *moment);
+  }
+  int edges = 0;
+  int alike = 0;
+  for (int y = 0; y < truth.labels.rows; ++y) {
+    for (int x = 0; x + 1 < truth.labels.cols; ++x) {
+      const auto standing = [&](int column) {
+        const auto label = static_cast<SemanticClass>(truth.labels.at<std::uint8_t>(y, column));
+        return label == SemanticClass::kPillar || label == SemanticClass::kVehicle;
+      };
+      if (standing(x) == standing(x + 1)) continue;
+      const auto at = static_cast<std::size_t>(y) * drawn[0].width + x;
+      const float full = drawn[0].pixels[at].y();
+      ++edges;
+      alike += std::abs(drawn[1].pixels[at].y() - full) < 0.03F * full ? 1 : 0;
+    }
+  }
+  EXPECT_GT(edges, 100);
+  EXPECT_GT(alike, 0.85 * edges) << alike << " of " << edges;
+}
+
 TEST(Renderer, NoiseDependsOnFrameAndCamera) {
   Renderer renderer(busyHall(), RenderOptions{});
   const int a = renderer.addCamera(smallCamera());

@@ -11,6 +11,7 @@ set(RENDER_SOURCES
     render/floor_rays_kernel.cpp
     render/floor_shading.cpp
     render/frame.cpp
+    render/frame_edges.cpp
     render/lamp_map.cpp
     render/light_bake.cpp
     render/light_grids.cpp

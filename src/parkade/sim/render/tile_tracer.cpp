@@ -25,12 +25,13 @@ RTCScene TileTracer::movingIn(int tile, bool mirrored) const {
   return setup_.moment->showsIn(eye, axis, angle) ? setup_.moment->scene.get() : nullptr;
 }
 
-void TileTracer::trace(int tile, TileSamples& out) const {
+void TileTracer::trace(int tile, std::uint64_t asked, TileSamples& out) const {
   const RTCScene moving = movingIn(tile, false);
   table_.prefetchSpread(tile);
   const RayTable::Packet* packets = table_.packets(tile);
   RayPacket rays;
   for (int p = 0; p < table_.packetsPerTile(); ++p) {
+    if ((asked >> static_cast<unsigned>(p) & 1U) == 0U) continue;
     const RayTable::Packet& packet = packets[p];
     rays.clear(setup_.mask);
     for (int k = 0; k < kPacket; ++k) {

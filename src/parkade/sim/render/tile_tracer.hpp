@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 
 #include "parkade/geometry/se3.hpp"
 #include "parkade/sim/render/frame.hpp"
@@ -28,7 +29,9 @@ class TileTracer {
         eye_(T_world_cam.translation().cast<float>()),
         floor_z_(setup.shader->floorHeight(eye_)) {}
 
-  void trace(int tile, TileSamples& out) const;
+  void trace(int tile, TileSamples& out) const { trace(tile, ~std::uint64_t{0}, out); }
+  /// Only the packets that are asked for, a bit each.
+  void trace(int tile, std::uint64_t packets, TileSamples& out) const;
   /// What moves, if any of it may show in a tile, or in the floor's mirror image there.
   [[nodiscard]] RTCScene movingIn(int tile, bool mirrored) const;
   [[nodiscard]] const Eigen::Vector3f& eye() const { return eye_; }
