@@ -13,7 +13,7 @@ namespace parkade {
 /// How the visual-inertial odometry errs between two frame sets, at least.
 struct OdometryNoiseOptions {
   double translation = 0.0008;
-  double yaw_deg = 0.004;
+  double yaw_deg = 0.0025;
   double height = 0.0013;
   double standing = 0.0004;
   double degraded_factor = 5.0;

@@ -40,7 +40,7 @@ struct FlowOptions {
   double min_correlation = 0.75;
   double max_refine_px = 1.5;
   double max_scale = 1.6;
-  double affine_sigma = 0.3;
+  double affine_sigma = 1.0;
   double max_gap_s = 0.35;
   double sigma_floor_px = 0.35;
   void visit(OptionVisitor& v) {
@@ -60,9 +60,9 @@ struct FlowOptions {
             "Change of scale or shape from which on a feature takes a new patch.", 1.05, 10);
     v.field("affine_sigma", affine_sigma, "ratio",
             "Expected change of a patch's shape between frames (standard deviation). Near floor "
-            "grows by a "
-            "third per frame at 15 km/h and 10 Hz; too small a value drags the position along.",
-            1e-4, 1);
+            "grows by a third per frame at 15 km/h and 10 Hz; too small a value drags the position "
+            "along, always the same way.",
+            1e-4, 10);
     v.field("max_gap_s", max_gap_s, "s",
             "Longest time without a picture over which features are kept.", 0, 5);
     v.field(
