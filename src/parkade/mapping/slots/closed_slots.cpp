@@ -11,7 +11,7 @@
 
 #include "parkade/geometry/se2.hpp"
 #include "parkade/mapping/map_check.hpp"
-#include "parkade/mapping/slots/floor_before.hpp"
+#include "parkade/mapping/slots/outlined_place.hpp"
 #include "parkade/mapping/slots/slot_axes.hpp"
 
 namespace parkade::slot_rows {
@@ -184,7 +184,7 @@ class ClosedSlotFinder {
   }
 
   // c: counter-clockwise, a long side first.
-  [[nodiscard]] std::optional<Filling> weigh(Corners c) const {
+  [[nodiscard]] std::optional<Filling> weigh(const Corners& c) const {
     constexpr double kOverlap = 0.15;
     constexpr double kPrior = -4.0;
     for (const MapSlot& slot : told_) {
@@ -193,27 +193,14 @@ class ClosedSlotFinder {
     for (std::size_t k = 0; k < 4; ++k) {
       if (!isPainted(c[k], c[(k + 1) % 4])) return std::nullopt;
     }
-    const Vector2d middle = 0.5 * (c[0] + c[2]);
-    if (floorBefore(grid_, c[2], c[3], middle) > floorBefore(grid_, c[0], c[1], middle)) {
-      c = {c[2], c[3], c[0], c[1]};
-    }
-    const SlotEvidence evidence = gatherEvidence(grid_, c);
-    if (isDenied(evidence)) return std::nullopt;
-    MapSlot slot;
-    slot.corners = c;
-    slot.shape = SlotShape::kParallel;
-    slot.corner_sigma = options_.corner_sigma_m;
-    for (const MapSlot& other : told_) {
-      slot.last_seen_ns = std::max(slot.last_seen_ns, other.last_seen_ns);
-    }
-    setFree(evidence, slot);
-    Filling filling;
-    filling.log_odds = kPrior + likelihood_.side(evidence.left) + likelihood_.side(evidence.right) +
-                       likelihood_.side(evidence.rear) + likelihood_.side(evidence.entrance);
-    if (filling.log_odds < options_.min_log_odds) return std::nullopt;
-    filling.merit = filling.log_odds;
-    filling.slots.push_back(slot);
-    return filling;
+    const Place place =
+        outlinedPlace(c, SlotShape::kParallel, told_, grid_, options_.corner_sigma_m);
+    const SlotEvidence& e = place.evidence;
+    if (isDenied(e)) return std::nullopt;
+    return oneSlot(place.slot,
+                   kPrior + likelihood_.side(e.left) + likelihood_.side(e.right) +
+                       likelihood_.side(e.rear) + likelihood_.side(e.entrance),
+                   options_.min_log_odds);
   }
 
   const std::vector<MapSlot>& told_;

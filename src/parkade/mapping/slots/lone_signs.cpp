@@ -9,7 +9,7 @@
 
 #include "parkade/core/median.hpp"
 #include "parkade/geometry/planar.hpp"
-#include "parkade/mapping/slots/floor_before.hpp"
+#include "parkade/mapping/slots/outlined_place.hpp"
 #include "parkade/mapping/slots/reserved_slots.hpp"
 #include "parkade/mapping/slots/row_pattern.hpp"
 #include "parkade/mapping/slots/slot_axes.hpp"
@@ -120,16 +120,12 @@ class LoneSignFinder {
     return outline;
   }
 
-  // Counter-clockwise from the entrance's left corner for who drives in.
-  [[nodiscard]] Corners cornersOf(const Vector2d& sign, const Outline& o) const {
+  // Counter-clockwise, one of the ends first.
+  [[nodiscard]] static Corners cornersOf(const Vector2d& sign, const Outline& o) {
     const Vector2d n(-o.u.y(), o.u.x());
     const auto at = [&](double s, double d) { return Vector2d(sign + s * o.u + d * n); };
-    const Corners c = {at(o.sides.low, o.ends.low), at(o.sides.high, o.ends.low),
-                       at(o.sides.high, o.ends.high), at(o.sides.low, o.ends.high)};
-    const Vector2d middle = 0.5 * (c[0] + c[2]);
-    if (floorBefore(grid_, c[2], c[3], middle) > floorBefore(grid_, c[0], c[1], middle))
-      return {c[2], c[3], c[0], c[1]};
-    return c;
+    return {at(o.sides.low, o.ends.low), at(o.sides.high, o.ends.low),
+            at(o.sides.high, o.ends.high), at(o.sides.low, o.ends.high)};
   }
 
   [[nodiscard]] std::optional<Filling> weigh(const Vector2d& sign, const Outline& outline) const {
@@ -137,24 +133,15 @@ class LoneSignFinder {
     constexpr double kSign = 3.0;        // hardly anything else is painted like that
     constexpr double kLeastPaint = 3.0;  // m, less does not tell where it is
     if (outline.sides.paint + outline.ends.paint < kLeastPaint) return std::nullopt;
-    MapSlot slot;
-    slot.corners = cornersOf(sign, outline);
-    slot.shape = SlotShape::kPerpendicular;
-    slot.corner_sigma = options_.corner_sigma_m;
-    for (const MapSlot& other : told_)
-      slot.last_seen_ns = std::max(slot.last_seen_ns, other.last_seen_ns);
-    const SlotEvidence e = gatherEvidence(grid_, slot.corners);
+    const Place place = outlinedPlace(cornersOf(sign, outline), SlotShape::kPerpendicular, told_,
+                                      grid_, options_.corner_sigma_m);
+    const SlotEvidence& e = place.evidence;
     const double left = likelihood_.side(e.left);
     const double right = likelihood_.side(e.right);
     if (isDenied(e) || left < 0.0 || right < 0.0) return std::nullopt;
-    setFree(e, slot);
-    Filling filling;
-    filling.log_odds =
-        kPrior + kSign + left + right + std::max(0.0, likelihood_.entrance(e.entrance));
-    if (filling.log_odds < options_.min_log_odds) return std::nullopt;
-    filling.merit = filling.log_odds;
-    filling.slots.push_back(slot);
-    return filling;
+    return oneSlot(place.slot,
+                   kPrior + kSign + left + right + std::max(0.0, likelihood_.entrance(e.entrance)),
+                   options_.min_log_odds);
   }
 
   const std::vector<MapSlot>& told_;
@@ -167,7 +154,8 @@ class LoneSignFinder {
 
 }  // namespace
 
-std::vector<Filling> findLoneSignSlots(const std::vector<MapSlot>& told, const LayeredGrid& grid,
+std::vector<Filling> findLoneSignSlots(const std::vector<Vector2d>& signs,
+                                       const std::vector<MapSlot>& told, const LayeredGrid& grid,
                                        const SlotLikelihood& likelihood,
                                        const RowCompletionOptions& options) {
   std::vector<Filling> fillings;
@@ -175,7 +163,7 @@ std::vector<Filling> findLoneSignSlots(const std::vector<MapSlot>& told, const L
   if (!axis) return fillings;
   const Vector2d u(std::cos(*axis), std::sin(*axis));
   const LoneSignFinder finder(told, grid, likelihood, options);
-  for (const Vector2d& sign : findPaintedSigns(grid)) {
+  for (const Vector2d& sign : signs) {
     if (const auto filling = finder.find(sign, u)) fillings.push_back(*filling);
   }
   return fillings;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "parkade/mapping/layered_grid.hpp"
@@ -14,11 +15,12 @@
 
 namespace parkade::slot_rows {
 
-/// For each painted sign (reserved_slots.hpp) in none of the slots told, one slot with the sign in
+/// For each painted sign (findPaintedSigns) in none of the slots told, one slot with the sign in
 /// its middle and its sides along the garage's axes, where enough of its outline is painted to tell
 /// which way it lies; entered from where more of the floor is known. None where the garage has no
 /// axes. docs/math/slots.md, "Signs without a row".
-std::vector<Filling> findLoneSignSlots(const std::vector<MapSlot>& told, const LayeredGrid& grid,
+std::vector<Filling> findLoneSignSlots(const std::vector<Eigen::Vector2d>& signs,
+                                       const std::vector<MapSlot>& told, const LayeredGrid& grid,
                                        const SlotLikelihood& likelihood,
                                        const RowCompletionOptions& options);
 

@@ -166,11 +166,11 @@ std::vector<Vector2d> findPaintedSigns(const LayeredGrid& grid) {
   return signs;
 }
 
-std::vector<Filling> findReservedSlots(const std::vector<MapSlot>& told,
+std::vector<Filling> findReservedSlots(const std::vector<Vector2d>& signs,
+                                       const std::vector<MapSlot>& told,
                                        const std::vector<Vector2d>& pillars,
                                        const LayeredGrid& grid, const SlotLikelihood& likelihood,
                                        const RowCompletionOptions& options) {
-  const std::vector<Vector2d> signs = findPaintedSigns(grid);
   std::vector<Filling> fillings;
   if (signs.empty()) return fillings;
   const ReservedSlotFinder finder(told, pillars, grid, likelihood, options);

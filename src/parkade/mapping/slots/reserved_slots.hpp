@@ -26,7 +26,8 @@ double wideFrontOf(const std::vector<MapSlot>& told);
 /// For each sign in the depth of a row, not in a slot told, one wide slot with the sign in its
 /// middle: as wide as the sides' paint has it, where none shows as the garage's others.
 /// docs/math/slots.md.
-std::vector<Filling> findReservedSlots(const std::vector<MapSlot>& told,
+std::vector<Filling> findReservedSlots(const std::vector<Eigen::Vector2d>& signs,
+                                       const std::vector<MapSlot>& told,
                                        const std::vector<Eigen::Vector2d>& pillars,
                                        const LayeredGrid& grid, const SlotLikelihood& likelihood,
                                        const RowCompletionOptions& options);

@@ -94,8 +94,9 @@ class RowCompleter {
         fillings.push_back(std::move(filling));
       }
     }
+    const std::vector<Vector2d> signs = slot_rows::findPaintedSigns(grid_);
     for (Filling& filling :
-         slot_rows::findReservedSlots(told_, pillars_, grid_, likelihood_, options_)) {
+         slot_rows::findReservedSlots(signs, told_, pillars_, grid_, likelihood_, options_)) {
       fillings.push_back(std::move(filling));
     }
     RowCompletion result;
@@ -112,8 +113,9 @@ class RowCompleter {
         result.added);
     takeBest(slot_rows::findClosedSlots(knownWith(result.added), grid_, likelihood_, options_),
              result.added);
-    takeBest(slot_rows::findLoneSignSlots(knownWith(result.added), grid_, likelihood_, options_),
-             result.added);
+    takeBest(
+        slot_rows::findLoneSignSlots(signs, knownWith(result.added), grid_, likelihood_, options_),
+        result.added);
     if (result.added.size() > known) fillGaps(result.added);
     result.replaced = replaced_;
     for (std::size_t i = 0; i < told_.size(); ++i) {

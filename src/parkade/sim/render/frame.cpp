@@ -105,18 +105,9 @@ void FrameTracer::addGroups(const SurfaceHit* hits, const Eigen::Vector3f* direc
     group.eye = &eye();
     group.spread = spread;
     group.members[0] = static_cast<std::uint8_t>(i);
-    const Eigen::Vector3f& n = hits[i].geometric_normal;
     for (int j = i + 1; j < samples_; ++j) {
-      if (hits[j].triangle == kNoTriangle || hits[j].object != hits[i].object) {
+      if (!shader.areOneSurface(hits[i], hits[j], moment)) {
         continue;
-      }
-      if (hits[j].triangle != hits[i].triangle) {
-        const Eigen::Vector3f& m = hits[j].geometric_normal;
-        const float dot = n.dot(m);
-        if (shader.materialIndex(hits[j], moment) != shader.materialIndex(hits[i], moment) ||
-            dot * dot < 0.97F * n.squaredNorm() * m.squaredNorm()) {
-          continue;
-        }
       }
       done |= 1U << static_cast<unsigned>(j);
       group.members[group.count++] = static_cast<std::uint8_t>(j);

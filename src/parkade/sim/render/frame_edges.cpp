@@ -8,8 +8,6 @@ namespace parkade::sim {
 namespace {
 
 constexpr int kTile = RayTable::kTile;
-constexpr int kBlocks = kTile / 2;
-static_assert(kBlocks * kBlocks == 64);
 
 class EdgeFinder {
  public:
@@ -21,15 +19,9 @@ class EdgeFinder {
     const SurfaceHit& a = samples_.hits[static_cast<std::size_t>(i)];
     const SurfaceHit& b = samples_.hits[static_cast<std::size_t>(j)];
     if (a.t < 0.0F || b.t < 0.0F) return false;  // no rays
-    if (a.object == b.object && a.triangle == b.triangle) return false;
-    if (a.object != b.object || a.triangle == kNoTriangle || b.triangle == kNoTriangle ||
-        shader_.materialIndex(a, moment_) != shader_.materialIndex(b, moment_)) {
-      return true;
-    }
+    if (!shader_.areOneSurface(a, b, moment_)) return true;
+    if (a.triangle == b.triangle) return false;
     const Eigen::Vector3f& n = a.geometric_normal;
-    const Eigen::Vector3f& m = b.geometric_normal;
-    const float dot = n.dot(m);
-    if (dot * dot < 0.97F * n.squaredNorm() * m.squaredNorm()) return true;
     constexpr float kBehind = 0.02F;  // of the distance, off the other's plane
     const Eigen::Vector3f apart = b.t * samples_.directions[static_cast<std::size_t>(j)] -
                                   a.t * samples_.directions[static_cast<std::size_t>(i)];
@@ -41,10 +33,6 @@ class EdgeFinder {
   const Shader& shader_;
   const Moment& moment_;
 };
-
-PixelBlocks blockOf(int x, int y) {
-  return PixelBlocks{1} << static_cast<unsigned>(y / 2 * kBlocks + x / 2);
-}
 
 }  // namespace
 

@@ -13,9 +13,14 @@ namespace parkade::sim {
 using PixelBlocks = std::uint64_t;
 inline constexpr PixelBlocks kAllBlocks = ~PixelBlocks{0};
 
-inline bool isIn(PixelBlocks blocks, int x, int y) {
+/// The block of a pixel of the tile.
+inline PixelBlocks blockOf(int x, int y) {
   constexpr int kBlocks = RayTable::kTile / 2;
-  return (blocks >> static_cast<unsigned>(y / 2 * kBlocks + x / 2) & 1U) != 0U;
+  static_assert(kBlocks * kBlocks == 64);
+  return PixelBlocks{1} << static_cast<unsigned>(y / 2 * kBlocks + x / 2);
+}
+inline bool isIn(PixelBlocks blocks, int x, int y) {
+  return (blocks & blockOf(x, y)) != 0U;
 }
 
 /// The blocks with a pixel whose neighbour in the tile shows another surface: another object or

@@ -125,6 +125,19 @@ class Shader {
     return hit.object < 0 ? triangles_[hit.triangle].material : triangleOf(hit, moment).material;
   }
 
+  /// Whether two hits are of one object and material and turned alike, to 10 degrees.
+  [[nodiscard]] bool areOneSurface(const SurfaceHit& a, const SurfaceHit& b,
+                                   const Moment& moment) const {
+    if (a.object != b.object) return false;
+    if (a.triangle == b.triangle) return true;
+    if (a.triangle == kNoTriangle || b.triangle == kNoTriangle) return false;
+    const Eigen::Vector3f& n = a.geometric_normal;
+    const Eigen::Vector3f& m = b.geometric_normal;
+    const float dot = n.dot(m);
+    return materialIndex(a, moment) == materialIndex(b, moment) &&
+           dot * dot >= 0.97F * n.squaredNorm() * m.squaredNorm();
+  }
+
   /// Fetches what shade() will read of a hit. Hits of a tile shaded much later wait less for
   /// memory.
   void prefetch(const SurfaceHit& hit) const {
