@@ -11,11 +11,11 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <opencv2/core/utility.hpp>
 #include <string>
 #include <vector>
 
+#include "binary_cache.hpp"
 #include "parkade/core/random.hpp"
 #include "parkade/core/units.hpp"
 #include "parkade/eval/consistency.hpp"
@@ -49,48 +49,15 @@ struct Drive {
   std::vector<TrackSet> frames;
 };
 
-template <class T>
-void put(std::ofstream& file, const T& value) {
-  file.write(reinterpret_cast<const char*>(&value), sizeof value);
-}
-template <class T>
-bool get(std::ifstream& file, T& value) {
-  return static_cast<bool>(file.read(reinterpret_cast<char*>(&value), sizeof value));
+template <class Cache>
+bool pass(Cache& cache, TrackSet& tracks) {
+  return cache(tracks.t_ns) && cache.all(tracks.camera_ok) && cache.all(tracks.observations);
 }
 
-template <class T>
-void putAll(std::ofstream& file, const std::vector<T>& values) {
-  put(file, values.size());
-  for (const T& value : values) put(file, value);
-}
-template <class T>
-bool getAll(std::ifstream& file, std::vector<T>& values) {
-  std::size_t count = 0;
-  if (!get(file, count)) return false;
-  values.resize(count);
-  for (T& value : values) {
-    if (!get(file, value)) return false;
-  }
-  return true;
-}
-
-void writeTracks(const std::string& path, const std::vector<TrackSet>& frames) {
-  std::ofstream file(path, std::ios::binary);
-  for (const TrackSet& tracks : frames) {
-    put(file, tracks.t_ns);
-    putAll(file, tracks.camera_ok);
-    putAll(file, tracks.observations);
-  }
-}
-
-bool readTracks(const std::string& path, std::vector<TrackSet>& frames) {
-  std::ifstream file(path, std::ios::binary);
-  TrackSet tracks;
-  while (get(file, tracks.t_ns)) {
-    if (!getAll(file, tracks.camera_ok) || !getAll(file, tracks.observations)) return false;
-    frames.push_back(tracks);
-  }
-  return !frames.empty();
+template <class Cache>
+bool pass(Cache& cache, Drive& drive) {
+  return cache.all(drive.imu) && cache.all(drive.wheel) &&
+         cache.each(drive.frames, [&](TrackSet& tracks) { return pass(cache, tracks); });
 }
 
 /// Passes a source on and keeps its inertial readings.
@@ -130,13 +97,10 @@ Status load(const Arguments& arguments, Drive& drive) {
   if (!truth) return truth.error();
   drive.truth = truth->poses;
   const std::string cache = drive.path + "/" + arguments.name;
-  const std::string readings = drive.path + "/" + arguments.name + ".imu";
-  if (std::filesystem::exists(cache) && std::filesystem::exists(readings)) {
-    std::ifstream file(readings, std::ios::binary);
-    if (readTracks(cache, drive.frames) && getAll(file, drive.imu) && getAll(file, drive.wheel)) {
-      return {};
-    }
-    drive.frames.clear();  // cut off: tracked anew
+  if (std::filesystem::exists(cache)) {
+    CacheReader file(cache);
+    if (pass(file, drive)) return {};
+    drive.frames.clear();  // cut off, or another's: tracked anew
     drive.imu.clear();
     drive.wheel.clear();
   }
@@ -150,10 +114,8 @@ Status load(const Arguments& arguments, Drive& drive) {
   TrackKeeper keeper(drive);
   (*run)->addObserver(&keeper);
   if (Status done = (*run)->run(source); !done) return done;
-  writeTracks(cache, drive.frames);
-  std::ofstream file(readings, std::ios::binary);
-  putAll(file, drive.imu);
-  putAll(file, drive.wheel);
+  CacheWriter file(cache);
+  if (!pass(file, drive) || !file.finish()) return Error{cache + ": cannot be written"};
   return {};
 }
 

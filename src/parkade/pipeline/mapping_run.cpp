@@ -189,7 +189,7 @@ void MappingRun::Impl::estimate(Estimation& work) {
   work.end = Clock::now();
   for (PipelineObserver* observer : observers) {
     observer->onPose({work.packet.frames.index, static_cast<int>(work.tracks.observations.size()),
-                      fused, estimator_.statistics()});
+                      fused, estimator_.statistics(), estimate, estimator_.rigSigma()});
   }
   if (mapper != nullptr && semantics_delay_ > 0) offerPictures(work, estimate);
   work.packet.frames.images.clear();

@@ -71,6 +71,8 @@ struct PoseEvent {
   int num_tracks = 0;
   const PoseEstimate& estimate;  ///< no pose yet while the health is kInitialising
   const VioStatistics& statistics;
+  const PoseEstimate& odometry;  ///< that the estimate rests on; the same where nothing else does
+  RigSigma rig_sigma;            ///< by then
 };
 
 /// What was seen on the ground in one frame set.
