@@ -138,13 +138,14 @@ class RowCompleter {
     }
   }
 
-  // Slots of a few pictures that the map as a whole speaks against.
+  // Slots of a few pictures that the map as a whole speaks against, and gaps, which look like slots
+  // in every picture.
   [[nodiscard]] std::vector<std::size_t> findUnfounded() const {
     constexpr int kFewLooks = 10;
     std::vector<std::size_t> unfounded;
     for (std::size_t i = 0; i < told_.size(); ++i) {
-      if (told_[i].observations < kFewLooks &&
-          (isDenied(evidence_[i]) || likelihood_.lacksSide(evidence_[i]))) {
+      const bool is_doubted = isDenied(evidence_[i]) || likelihood_.lacksSide(evidence_[i]);
+      if ((told_[i].observations < kFewLooks && is_doubted) || isGapBetweenSlots(evidence_[i])) {
         unfounded.push_back(i);
       }
     }

@@ -66,6 +66,52 @@ TEST(SlotDoubts, AFewPicturesDoNotOutweighAnArrow) {
   EXPECT_EQ(garage.complete().replaced, std::vector<std::int64_t>{slot.id});
 }
 
+// Two bays' sides with a pillar or a lane's edge between them look like a slot in every picture.
+TEST(SlotDoubts, AGapBetweenBaysIsNoSlotHoweverOftenItIsTaken) {
+  const auto unpainted = [](Garage& garage) {
+    MapSlot slot = tellOneRarelySeen(garage);
+    garage.told.back().observations = 40;
+    for (const int side : {0, 1}) {
+      const Vector2d x(0.05, 0.0);
+      garage.fill(GridLayer::kParkingLines, SemanticClass::kSlotLine, slot.corners[side] - x,
+                  slot.corners[3 - side] + x);
+    }
+    return slot;
+  };
+  {
+    Garage garage;
+    unpainted(garage);
+    EXPECT_TRUE(garage.complete().replaced.empty());
+  }
+  const auto foot = [](const MapSlot& slot) -> Vector2d {
+    return slot.corners[0] + Vector2d(1.0, 3.5);
+  };
+  const auto stand = [&](Garage& garage, const MapSlot& slot) {
+    garage.fill(GridLayer::kZoneMarkers, SemanticClass::kPillar, foot(slot),
+                foot(slot) + Vector2d(0.6, 0.6));
+  };
+  const auto edge = [](Garage& garage, const MapSlot& slot) {
+    garage.fill(GridLayer::kParkingLines, SemanticClass::kLaneLine,
+                slot.corners[0] - Vector2d(0.0, 0.1), slot.corners[0] + Vector2d(1.3, 0.1));
+  };
+  {
+    Garage garage;
+    const MapSlot slot = unpainted(garage);
+    stand(garage, slot);
+    EXPECT_EQ(garage.complete().replaced, std::vector<std::int64_t>{slot.id});
+    garage.number(slot);
+    EXPECT_TRUE(garage.complete().replaced.empty());
+  }
+  {
+    Garage garage;
+    const MapSlot slot = unpainted(garage);
+    edge(garage, slot);
+    EXPECT_EQ(garage.complete().replaced, std::vector<std::int64_t>{slot.id});
+    garage.park(slot);
+    EXPECT_TRUE(garage.complete().replaced.empty());
+  }
+}
+
 // One line of the next slot is not enough, but numbers are painted in slots alone.
 TEST(SlotDoubts, APaintedNumberSpeaksForASlot) {
   for (const bool has_number : {false, true}) {

@@ -127,6 +127,15 @@ bool SlotLikelihood::lacksSide(const SlotEvidence& evidence) const {
   return isBare(evidence.left, kPlainly) || isBare(evidence.right, kPlainly);
 }
 
+bool isGapBetweenSlots(const SlotEvidence& evidence) {
+  constexpr double kVehicle = 0.2;
+  constexpr double kLaneAhead = 0.3;
+  constexpr double kStructure = 0.02;  // a pillar's foot
+  if (isSlotAnyway(evidence) || showsNumber(evidence) || showsStop(evidence)) return false;
+  return evidence.vehicle < kVehicle &&
+         (evidence.lane_ahead > kLaneAhead || evidence.structure_inside > kStructure);
+}
+
 bool isDenied(const SlotEvidence& evidence) {
   constexpr double kMarkers = 0.02;
   constexpr double kLanes = 0.02;
@@ -140,7 +149,7 @@ bool isDenied(const SlotEvidence& evidence) {
   const bool has_lane_ahead = evidence.lane_ahead > kLaneAhead && !isSlotAnyway(evidence);
   return evidence.markers_inside > kMarkers || evidence.lanes_inside > kLanes ||
          evidence.lines_inside > kLines || evidence.structure_inside > kStructure ||
-         has_lane_ahead || evidence.divider > kDivider;
+         has_lane_ahead || evidence.divider > kDivider || isGapBetweenSlots(evidence);
 }
 
 void setFree(const SlotEvidence& evidence, MapSlot& slot) {

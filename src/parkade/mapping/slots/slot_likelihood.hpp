@@ -49,8 +49,12 @@ class SlotLikelihood {
   int with_stop_ = 0;
 };
 
-/// Whether the layers deny a slot: markings for who drives, lane lines, other lines, a sign
-/// that is not in its middle or something that stands in it.
+/// Whether the layers show what lies between the slots of a row and what a picture takes for one: a
+/// pillar in it, or lane line along its entrance, and nothing of what slots hold.
+bool isGapBetweenSlots(const SlotEvidence& evidence);
+
+/// Whether the layers deny a slot: it is such a gap, or holds markings for who drives, lane lines,
+/// other lines, a sign that is not in its middle or something that stands in it.
 bool isDenied(const SlotEvidence& evidence);
 
 /// Free or occupied, by the vehicles that the layers show in it; untouched where too little is
