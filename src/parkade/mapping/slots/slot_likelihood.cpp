@@ -128,11 +128,11 @@ bool SlotLikelihood::lacksSide(const SlotEvidence& evidence) const {
 }
 
 bool isGapBetweenSlots(const SlotEvidence& evidence) {
-  constexpr double kVehicle = 0.2;
+  constexpr double kVehicle = 0.3;  // of its middle: smears of those beside it reach so far
   constexpr double kLaneAhead = 0.3;
-  constexpr double kStructure = 0.02;  // a pillar's foot
+  constexpr double kStructure = 0.025;  // a pillar's foot
   if (isSlotAnyway(evidence) || showsNumber(evidence) || showsStop(evidence)) return false;
-  return evidence.vehicle < kVehicle &&
+  return evidence.vehicle_amid < kVehicle &&
          (evidence.lane_ahead > kLaneAhead || evidence.structure_inside > kStructure);
 }
 
