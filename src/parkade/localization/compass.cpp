@@ -88,7 +88,7 @@ std::optional<double> CompassScatter::add(double off_odometry) {
   constexpr std::size_t kReadings = 15;
   constexpr std::size_t kLeast = 4;
   constexpr double kPrior = 4.0;   // readings that the usual scatter counts for
-  constexpr double kShared = 1.6;  // of the error over the scatter: neighbours see the same lines
+  constexpr double kShared = 1.3;  // of the error over the scatter: neighbours see the same lines
   latest_.push_back(off_odometry);
   if (latest_.size() < kLeast) return std::nullopt;
   if (latest_.size() > kReadings) latest_.pop_front();

@@ -19,7 +19,7 @@ struct CompassOptions {
   double min_share = 0.5;
   double reference_m = 10.0;
   double reference_sigma_deg = 1.0;
-  double sigma_deg = 0.23;
+  double sigma_deg = 0.185;
 
   void visit(OptionVisitor& v) {
     v.field("enable", enable, "Take the rows of a garage for parallel or square to each other.");
@@ -35,7 +35,7 @@ struct CompassOptions {
     v.field("reference_sigma_deg", reference_sigma_deg, "deg",
             "Error of the axes as learned, which all headings read off them share.", 0.001, 10.0);
     v.field("sigma_deg", sigma_deg, "deg",
-            "Least error of one heading by the axes, once a metre: 1.6 times their scatter, for "
+            "Least error of one heading by the axes, once a metre: 1.3 times their scatter, for "
             "neighbours in time see the same lines; scattered readings err by more.",
             0.01, 10.0);
   }
