@@ -138,16 +138,18 @@ class RowCompleter {
     }
   }
 
-  // Slots of a few pictures that the map as a whole speaks against, and gaps, which look like slots
-  // in every picture.
+  // Slots of a few pictures that the map as a whole speaks against; and gaps, which look like slots
+  // in every picture, and what has one line alone though it is in plain sight.
   [[nodiscard]] std::vector<std::size_t> findUnfounded() const {
     constexpr int kFewLooks = 10;
+    constexpr double kOneLine = 1.0;  // log-odds; two lines make more than 3
     std::vector<std::size_t> unfounded;
     for (std::size_t i = 0; i < told_.size(); ++i) {
-      const bool is_doubted = isDenied(evidence_[i]) || likelihood_.lacksSide(evidence_[i]);
-      if ((told_[i].observations < kFewLooks && is_doubted) || isGapBetweenSlots(evidence_[i])) {
-        unfounded.push_back(i);
-      }
+      const SlotEvidence& e = evidence_[i];
+      const bool lacks_side = likelihood_.lacksSide(e);
+      const bool is_none = isGapBetweenSlots(e) || (lacks_side && likelihood_.whole(e) < kOneLine);
+      const bool has_few_looks = told_[i].observations < kFewLooks;
+      if (is_none || (has_few_looks && (isDenied(e) || lacks_side))) unfounded.push_back(i);
     }
     return unfounded;
   }

@@ -37,6 +37,23 @@ TEST(RowCompletion, FindsTheSlotBetweenTwoOthers) {
   EXPECT_GE(rows.added[0].corner_sigma, RowCompletionOptions{}.corner_sigma_m);
 }
 
+// A slanted slot has no side that the one before it could share.
+TEST(RowCompletion, WhatLiesBesideSlantedSlotsMustShowItsSide) {
+  Garage garage;
+  garage.tell(0, {0});
+  MapSlot slanted = Garage::slotAt(0, 2);
+  slanted.shape = SlotShape::kSlanted;
+  for (const int rear : {2, 3}) slanted.corners[static_cast<std::size_t>(rear)].x() += 2.0;
+  garage.told.push_back(slanted);
+  garage.paintTold();
+  EXPECT_TRUE(garage.complete().added.empty());
+  const MapSlot between = Garage::slotAt(0, 1);
+  garage.paint(between);
+  const RowCompletion rows = garage.complete();
+  ASSERT_EQ(rows.added.size(), 1U);
+  expectAt(rows.added[0], between);
+}
+
 TEST(RowCompletion, TellsTheVehicleInIt) {
   Garage garage;
   garage.tell(0, {0, 2});

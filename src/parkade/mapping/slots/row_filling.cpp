@@ -145,6 +145,17 @@ class GapFiller {
     });
   }
 
+  // Whether the slot that ends, or begins, at s has a side there that one of this shape would
+  // share: beside slanted slots there is a triangle that is none's.
+  [[nodiscard]] bool hasSideAt(double s, bool ends) const {
+    constexpr double kInside = 0.3;
+    const bool is_slanted = pattern_.shape == SlotShape::kSlanted;
+    return std::none_of(row_.members.begin(), row_.members.end(), [&](const Member& m) {
+      return std::abs((ends ? m.end : m.begin) - s) < kInside &&
+             (told_[m.slot].shape == SlotShape::kSlanted) != is_slanted;
+    });
+  }
+
   /// What bounds a gap.
   struct Ends {
     bool after_slot = false;
@@ -158,7 +169,8 @@ class GapFiller {
     }
   };
   [[nodiscard]] Ends endsOf(const Gap& gap) const {
-    return {gap.at_begin == GapEnd::kSlot, gap.at_end == GapEnd::kSlot, hasSlotBy(gap.begin, true),
+    return {gap.at_begin == GapEnd::kSlot && hasSideAt(gap.begin, true),
+            gap.at_end == GapEnd::kSlot && hasSideAt(gap.end, false), hasSlotBy(gap.begin, true),
             hasSlotBy(gap.end, false)};
   }
 

@@ -27,7 +27,8 @@ MapSlot tellOneRarelySeen(Garage& garage) {
   return slot;
 }
 
-// Few pictures may take a lane's edge for a slot's side, and nothing for the other one.
+// Pictures may take a lane's edge for a slot's side, and nothing for the other one; where two of
+// its lines show, only few do.
 TEST(SlotDoubts, AFreeSlotSeenRarelyMustShowBothSides) {
   Garage garage;
   const MapSlot slot = tellOneRarelySeen(garage);
@@ -42,6 +43,9 @@ TEST(SlotDoubts, AFreeSlotSeenRarelyMustShowBothSides) {
   {
     Garage seen_often = garage;
     seen_often.told.back().observations = 20;
+    EXPECT_EQ(seen_often.complete().replaced, std::vector<std::int64_t>{slot.id});
+    seen_often.fill(GridLayer::kParkingLines, SemanticClass::kSlotLine,
+                    slot.corners[0] - Vector2d(0.0, 0.05), slot.corners[1] + Vector2d(0.0, 0.05));
     EXPECT_TRUE(seen_often.complete().replaced.empty());
   }
   garage.paint(slot);
