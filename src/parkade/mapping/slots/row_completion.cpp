@@ -12,6 +12,7 @@
 #include "parkade/mapping/map_check.hpp"
 #include "parkade/mapping/slots/bay_ends.hpp"
 #include "parkade/mapping/slots/closed_slots.hpp"
+#include "parkade/mapping/slots/entrance_turning.hpp"
 #include "parkade/mapping/slots/lined_slots.hpp"
 #include "parkade/mapping/slots/lone_signs.hpp"
 #include "parkade/mapping/slots/reserved_slots.hpp"
@@ -68,6 +69,9 @@ class RowCompleter {
     const slot_rows::SquaredSlots squared = slot_rows::squareSlots(told_, grid);
     for (const std::size_t i : squared.moved) moved_.insert(told_[i].id);
     dropTold(squared.wrong);
+    for (const std::size_t i : slot_rows::turnBlockedSlots(told_, grid)) {
+      moved_.insert(told_[i].id);
+    }
     for (const std::size_t i : slot_rows::turnToAxes(told_)) moved_.insert(told_[i].id);
     for (const std::size_t i : slot_rows::alignRows(told_)) moved_.insert(told_[i].id);
     gatherMissing();

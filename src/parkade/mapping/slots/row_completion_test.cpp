@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "parkade/mapping/map_check.hpp"
@@ -225,6 +226,40 @@ TEST(RowCompletion, ReplacesAMisfit) {
 }
 
 // The same far from the slots of its row that were read rightly.
+// The next slot of the row stands before its end: it is entered from the aisle.
+TEST(RowCompletion, TurnsASlotThatIsToldFromABlockedEnd) {
+  Garage garage;
+  constexpr double kLength = 6.0;
+  const auto along = [](double x) {
+    MapSlot slot = Garage::slotAt(0, 0);
+    slot.shape = SlotShape::kParallel;
+    slot.corners = {Vector2d(x, 0.0), Vector2d(x + kLength, 0.0), Vector2d(x + kLength, 2.3),
+                    Vector2d(x, 2.3)};
+    return slot;
+  };
+  const MapSlot first = along(1.0);
+  const MapSlot wanted = along(9.5);
+  MapSlot second = wanted;
+  second.id = 2;
+  second.shape = SlotShape::kPerpendicular;
+  std::rotate(second.corners.begin(), second.corners.begin() + 3, second.corners.end());
+  garage.told = {first, second};
+  for (const MapSlot& slot : garage.told) {
+    garage.paint(slot);
+    MapSlot back = slot;
+    std::rotate(back.corners.begin(), back.corners.begin() + 2, back.corners.end());
+    garage.paint(back);
+  }
+  // Behind them nothing was seen.
+  garage.fill(GridLayer::kParkingLines, SemanticClass::kUnknown, {-12.0, 2.5}, {36.0, 9.0});
+  const RowCompletion rows = garage.complete();
+  EXPECT_EQ(rows.replaced, std::vector<std::int64_t>{2});
+  ASSERT_EQ(rows.added.size(), 1U);
+  expectAt(rows.added[0], wanted);
+  EXPECT_EQ(rows.added[0].id, 2);
+  EXPECT_EQ(rows.added[0].shape, SlotShape::kParallel);
+}
+
 TEST(RowCompletion, SplitsTwoSlotsReadAsOne) {
   enum class Case { kTwo, kShortSides, kLonger, kWall, kRear, kNoneKnown };
   for (const Case which :
