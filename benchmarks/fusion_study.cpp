@@ -11,22 +11,18 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "binary_cache.hpp"
-#include "parkade/core/options.hpp"
-#include "parkade/eval/consistency.hpp"
-#include "parkade/eval/evaluation.hpp"
 #include "parkade/io/sequence_reader.hpp"
-#include "parkade/io/trajectory_io.hpp"
 #include "parkade/pipeline/fused_mapper.hpp"
 #include "parkade/pipeline/mapping_run.hpp"
 #include "parkade/pipeline/thread_pool.hpp"
 #include "parkade/vio/rig_error.hpp"
+#include "study_support.hpp"
 
 namespace parkade {
 namespace {
@@ -53,6 +49,9 @@ struct Drive {
   std::vector<Eigen::Vector3d> viewpoints;
   Trajectory truth;
   std::vector<Step> steps;
+  std::set<TimeNs> held;  // frame sets whose features come
+  Trajectory odometry;
+  double odometry_rmse = 0.0;  // m
 };
 
 // Each of these passes a value to a CacheWriter or from a CacheReader.
@@ -135,9 +134,7 @@ Status load(const Arguments& arguments, const std::string& path, Drive& drive) {
     drive.steps.clear();  // cut off, or another's: driven anew
   }
   PipelineOptions pipeline;
-  for (const std::string& set : arguments.run_sets) {
-    if (Status status = setOption(asOptions(pipeline), set); !status) return status;
-  }
+  if (Status status = setAll(pipeline, arguments.run_sets); !status) return status;
   auto run = MappingRun::create((*reader)->rig(), pipeline, 2, RunMethod::kFused);
   if (!run) return run.error();
   StepKeeper keeper(drive.steps);
@@ -150,31 +147,26 @@ Status load(const Arguments& arguments, const std::string& path, Drive& drive) {
   return {};
 }
 
-struct Score {
-  double rmse = 0.0;
-  double aligned = 0.0;
-  double heading_deg = 0.0;
-  double odometry = 0.0;
-  double nees_position = 0.0;
-  double nees_yaw = 0.0;
+// What is the same whatever the mapper's options.
+void prepare(Drive& drive) {
+  for (const Step& step : drive.steps) {
+    if (step.frame) {
+      drive.held.insert(step.frame->labels.t_ns);
+    } else if (step.odometry.health != Health::kInitialising) {
+      drive.odometry.push_back({step.odometry.t_ns, step.odometry.T_odom_vehicle});
+    }
+  }
+  drive.odometry_rmse = scorePoses(drive.odometry, {}, drive.truth).rmse;
+}
+
+struct Score : PoseScore {
+  double odometry = 0.0;  ///< rmse
   int loops = 0;
 };
 
-double positionError(const Trajectory& estimate, const Trajectory& truth) {
-  EvaluationOptions how;
-  how.align = "origin";
-  const auto errors = evaluate(estimate, truth, how);
-  return errors ? errors->ape.rmse : std::nan("");
-}
-
 Score judge(const Drive& drive, const FusedMapperOptions& options, const std::string& out) {
   FusedMapper mapper(options, drive.viewpoints);
-  std::set<TimeNs> held;
-  for (const Step& step : drive.steps) {
-    if (step.frame) held.insert(step.frame->labels.t_ns);
-  }
   Trajectory fused;
-  Trajectory odometry;
   PoseCovariances covariances;
   RigErrorOnWay rig_error;
   for (const Step& step : drive.steps) {
@@ -183,45 +175,25 @@ Score judge(const Drive& drive, const FusedMapperOptions& options, const std::st
       continue;
     }
     PoseEstimate pose = mapper.addOdometry(step.odometry);
-    if (held.count(step.odometry.t_ns) > 0) mapper.holdView();
+    if (drive.held.count(step.odometry.t_ns) > 0) mapper.holdView();
     if (pose.health == Health::kInitialising) continue;
     rig_error.advance(step.odometry.T_odom_vehicle, pose.T_odom_vehicle, step.rig_sigma);
     rig_error.addTo(pose);
-    odometry.push_back({pose.t_ns, step.odometry.T_odom_vehicle});
     fused.push_back({pose.t_ns, pose.T_odom_vehicle});
     covariances.push_back({pose.t_ns, pose.covariance.topLeftCorner<6, 6>()});
   }
-  Score score;
-  EvaluationOptions how;
-  how.align = "origin";
-  if (const auto joined = evaluate(fused, drive.truth, how)) {
-    score.rmse = joined->ape.rmse;
-    score.heading_deg = joined->ape_heading_deg.rmse;
-  }
-  how.align = "se3";
-  if (const auto aligned = evaluate(fused, drive.truth, how)) score.aligned = aligned->ape.rmse;
-  if (const auto consistency = poseConsistency(fused, covariances, drive.truth)) {
-    score.nees_position = consistency->position;
-    score.nees_yaw = consistency->yaw;
-  }
-  score.odometry = positionError(odometry, drive.truth);
-  score.loops = mapper.statistics().loops;
   if (!out.empty()) {
-    const std::string path = out + "/" + drive.name;
-    for (const auto& [end, poses] : {std::pair(".tum", &fused), std::pair("_vio.tum", &odometry)}) {
-      if (Status written = writeTrajectory(path + end, *poses, TrajectoryFormat::kTum); !written) {
-        fmt::print(stderr, "{}\n", written.error().message);
-      }
-    }
+    writePoses(out + "/" + drive.name + ".tum", fused);
+    writePoses(out + "/" + drive.name + "_vio.tum", drive.odometry);
   }
-  return score;
+  return {scorePoses(fused, covariances, drive.truth), drive.odometry_rmse,
+          mapper.statistics().loops};
 }
 
 void print(const std::string& name, const Score& s) {
   fmt::print(
       "  {:<14} fused {:.4f} odometry {:.4f} aligned {:.4f} heading {:.4f} NEES p {:.2f} yaw "
-      "{:.2f} "
-      "loops {}\n",
+      "{:.2f} loops {}\n",
       name, s.rmse, s.odometry, s.aligned, s.heading_deg, s.nees_position, s.nees_yaw, s.loops);
 }
 
@@ -248,13 +220,6 @@ void printMean(const std::string& variant, const std::vector<Score>& scores) {
   std::fflush(stdout);
 }
 
-Status setAll(FusedMapperOptions& options, const std::vector<std::string>& sets) {
-  for (const std::string& set : sets) {
-    if (Status status = setOption(asOptions(options), set); !status) return status;
-  }
-  return {};
-}
-
 int study(const Arguments& arguments) {
   FusedMapperOptions base;
   std::vector<FusedMapperOptions> variants;
@@ -270,6 +235,7 @@ int study(const Arguments& arguments) {
   std::vector<Drive> drives(arguments.sequences.size());
   for (std::size_t i = 0; status && i < drives.size(); ++i) {
     status = load(arguments, arguments.sequences[i], drives[i]);
+    prepare(drives[i]);
   }
   if (!status) {
     fmt::print(stderr, "{}\n", status.error().message);

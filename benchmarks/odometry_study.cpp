@@ -18,13 +18,12 @@
 #include "binary_cache.hpp"
 #include "parkade/core/random.hpp"
 #include "parkade/core/units.hpp"
-#include "parkade/eval/consistency.hpp"
-#include "parkade/eval/evaluation.hpp"
+#include "parkade/eval/association.hpp"
 #include "parkade/geometry/se2.hpp"
 #include "parkade/io/sequence_reader.hpp"
-#include "parkade/io/trajectory_io.hpp"
 #include "parkade/pipeline/mapping_run.hpp"
 #include "parkade/vio/rig_error.hpp"
+#include "study_support.hpp"
 
 namespace parkade {
 namespace {
@@ -105,9 +104,7 @@ Status load(const Arguments& arguments, Drive& drive) {
     drive.wheel.clear();
   }
   PipelineOptions pipeline;
-  for (const std::string& set : arguments.tracking) {
-    if (Status status = setOption(asOptions(pipeline), set); !status) return status;
-  }
+  if (Status status = setAll(pipeline, arguments.tracking); !status) return status;
   auto run = MappingRun::create(drive.rig, pipeline, 2);
   if (!run) return run.error();
   ListeningSource source(**reader, drive);
@@ -157,12 +154,7 @@ struct Stretch {
   int count = 0;
 };
 
-struct Score {
-  double rmse = 0.0;
-  double aligned = 0.0;
-  double heading_deg = 0.0;
-  double nees_position = 0.0;
-  double nees_yaw = 0.0;
+struct Score : PoseScore {
   double ms = 0.0;
   std::array<Stretch, 3> stretches{Stretch{1.0}, Stretch{5.0}, Stretch{15.0}};
 };
@@ -229,28 +221,14 @@ Score judge(const Drive& drive, const VioOptions& options, const std::string& ou
     estimate.push_back({pose.t_ns, pose.T_odom_vehicle});
     covariances.push_back({pose.t_ns, pose.covariance.topLeftCorner<6, 6>()});
   }
-  Score score;
-  score.ms = 1e3 * static_cast<double>(cv::getTickCount() - begin) / cv::getTickFrequency() /
-             static_cast<double>(drive.frames.size());
-  EvaluationOptions how;
-  how.align = "origin";
-  if (const auto joined = evaluate(estimate, drive.truth, how)) {
-    score.rmse = joined->ape.rmse;
-    score.heading_deg = joined->ape_heading_deg.rmse;
-  }
-  how.align = "se3";
-  if (const auto aligned = evaluate(estimate, drive.truth, how)) score.aligned = aligned->ape.rmse;
-  if (const auto consistency = poseConsistency(estimate, covariances, drive.truth)) {
-    score.nees_position = consistency->position;
-    score.nees_yaw = consistency->yaw;
-  }
+  const double ms = 1e3 * static_cast<double>(cv::getTickCount() - begin) / cv::getTickFrequency() /
+                    static_cast<double>(drive.frames.size());
+  Score score{scorePoses(estimate, covariances, drive.truth)};
+  score.ms = ms;
   addStretches(estimate, drive.truth, score);
   if (!out.empty()) {
     const std::string name = std::filesystem::path(drive.path).filename().string();
-    const std::string path = out + "/" + name + ".tum";
-    if (Status written = writeTrajectory(path, estimate, TrajectoryFormat::kTum); !written) {
-      fmt::print(stderr, "{}\n", written.error().message);
-    }
+    writePoses(out + "/" + name + ".tum", estimate);
   }
   return score;
 }
@@ -270,11 +248,9 @@ void print(const std::string& name, const Score& s) {
 
 int study(const Arguments& arguments) {
   VioOptions options;
-  for (const std::string& set : arguments.sets) {
-    if (const Status status = setOption(asOptions(options), set); !status) {
-      fmt::print(stderr, "{}\n", status.error().message);
-      return 2;
-    }
+  if (const Status status = setAll(options, arguments.sets); !status) {
+    fmt::print(stderr, "{}\n", status.error().message);
+    return 2;
   }
   Score sum;
   int drives = 0;

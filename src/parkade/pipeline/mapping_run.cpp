@@ -176,9 +176,10 @@ void MappingRun::Impl::estimate(Estimation& work) {
     semantics->enterDue(work.number);
     fused = mapper->estimate();
   }
+  const RigSigma rig_sigma = estimator_.rigSigma();
   if (estimate.health != Health::kInitialising) {
     if (!in_saved_map) {  // which tells the place, whatever the way to it
-      rig_error_.advance(estimate.T_odom_vehicle, fused.T_odom_vehicle, estimator_.rigSigma());
+      rig_error_.advance(estimate.T_odom_vehicle, fused.T_odom_vehicle, rig_sigma);
       rig_error_.addTo(fused);
     }
     odometry.push_back({estimate.t_ns, estimate.T_odom_vehicle});
@@ -189,7 +190,7 @@ void MappingRun::Impl::estimate(Estimation& work) {
   work.end = Clock::now();
   for (PipelineObserver* observer : observers) {
     observer->onPose({work.packet.frames.index, static_cast<int>(work.tracks.observations.size()),
-                      fused, estimator_.statistics(), estimate, estimator_.rigSigma()});
+                      fused, estimator_.statistics(), estimate, rig_sigma});
   }
   if (mapper != nullptr && semantics_delay_ > 0) offerPictures(work, estimate);
   work.packet.frames.images.clear();

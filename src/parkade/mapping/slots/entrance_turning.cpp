@@ -52,9 +52,7 @@ std::vector<std::size_t> turnBlockedSlots(std::vector<MapSlot>& told, const Laye
     const auto& c = told[i].corners;
     MapSlot slot = told[i];
     slot.shape = SlotShape::kParallel;
-    slot.corners =
-        outlinedPlace({c[1], c[2], c[3], c[0]}, slot.shape, told, grid, slot.corner_sigma)
-            .slot.corners;
+    slot.corners = enteredFromFloor({c[1], c[2], c[3], c[0]}, grid);
     if (isBlocked(slot, told)) continue;
     told[i] = slot;
     turned.push_back(i);

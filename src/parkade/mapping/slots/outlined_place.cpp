@@ -28,15 +28,20 @@ double floorBefore(const LayeredGrid& grid, const Vector2d& left, const Vector2d
 
 }  // namespace
 
-Place outlinedPlace(const std::array<Vector2d, 4>& corners, SlotShape shape,
-                    const std::vector<MapSlot>& told, const LayeredGrid& grid, double sigma) {
+std::array<Vector2d, 4> enteredFromFloor(const std::array<Vector2d, 4>& corners,
+                                         const LayeredGrid& grid) {
   const auto& c = corners;
   const Vector2d middle = 0.5 * (c[0] + c[2]);
-  Place place;
-  place.slot.corners = c;
   if (floorBefore(grid, c[2], c[3], middle) > floorBefore(grid, c[0], c[1], middle)) {
-    place.slot.corners = {c[2], c[3], c[0], c[1]};
+    return {c[2], c[3], c[0], c[1]};
   }
+  return c;
+}
+
+Place outlinedPlace(const std::array<Vector2d, 4>& corners, SlotShape shape,
+                    const std::vector<MapSlot>& told, const LayeredGrid& grid, double sigma) {
+  Place place;
+  place.slot.corners = enteredFromFloor(corners, grid);
   place.slot.shape = shape;
   place.slot.corner_sigma = sigma;
   for (const MapSlot& other : told) {

@@ -13,9 +13,12 @@
 
 namespace parkade::slot_rows {
 
-/// Within corners (counter-clockwise, an end or long side that may be the entrance first), entered
-/// there or from the other side, whichever has more known floor before it (2.5 m); seen when the
-/// last of `told` was.
+/// The same corners (counter-clockwise, an end or long side that may be the entrance first), from
+/// there or from the other side, whichever has more known floor before it (2.5 m).
+std::array<Eigen::Vector2d, 4> enteredFromFloor(const std::array<Eigen::Vector2d, 4>& corners,
+                                                const LayeredGrid& grid);
+
+/// A slot within such corners, entered so; seen when the last of `told` was.
 Place outlinedPlace(const std::array<Eigen::Vector2d, 4>& corners, SlotShape shape,
                     const std::vector<MapSlot>& told, const LayeredGrid& grid, double sigma);
 

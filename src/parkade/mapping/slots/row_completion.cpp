@@ -67,13 +67,11 @@ class RowCompleter {
                const LayeredGrid& grid, const RowCompletionOptions& options)
       : told_(told), pillars_(pillars), grid_(grid), options_(options) {
     const slot_rows::SquaredSlots squared = slot_rows::squareSlots(told_, grid);
-    for (const std::size_t i : squared.moved) moved_.insert(told_[i].id);
+    noteMoved(squared.moved);
     dropTold(squared.wrong);
-    for (const std::size_t i : slot_rows::turnBlockedSlots(told_, grid)) {
-      moved_.insert(told_[i].id);
-    }
-    for (const std::size_t i : slot_rows::turnToAxes(told_)) moved_.insert(told_[i].id);
-    for (const std::size_t i : slot_rows::alignRows(told_)) moved_.insert(told_[i].id);
+    noteMoved(slot_rows::turnBlockedSlots(told_, grid));
+    noteMoved(slot_rows::turnToAxes(told_));
+    noteMoved(slot_rows::alignRows(told_));
     gatherMissing();
     for (const SlotEvidence& evidence : evidence_) likelihood_.learn(evidence);
     dropTold(findUnfounded());
@@ -132,6 +130,10 @@ class RowCompleter {
   }
 
  private:
+  void noteMoved(const std::vector<std::size_t>& slots) {
+    for (const std::size_t i : slots) moved_.insert(told_[i].id);
+  }
+
   // Indices in their order.
   void dropTold(const std::vector<std::size_t>& slots) {
     for (std::size_t k = slots.size(); k-- > 0;) {

@@ -27,13 +27,19 @@ MapSlot tellOneRarelySeen(Garage& garage) {
   return slot;
 }
 
+// One side alone: 0 is left of the entrance, 1 right.
+void paintSide(Garage& garage, const MapSlot& slot, std::size_t side) {
+  const Vector2d half_width(0.05, 0.0);
+  garage.fill(GridLayer::kParkingLines, SemanticClass::kSlotLine, slot.corners[side] - half_width,
+              slot.corners[3 - side] + half_width);
+}
+
 // Pictures may take a lane's edge for a slot's side, and nothing for the other one; where two of
 // its lines show, only few do.
 TEST(SlotDoubts, AFreeSlotSeenRarelyMustShowBothSides) {
   Garage garage;
   const MapSlot slot = tellOneRarelySeen(garage);
-  garage.fill(GridLayer::kParkingLines, SemanticClass::kSlotLine,
-              slot.corners[0] - Vector2d(0.05, 0.0), slot.corners[3] + Vector2d(0.05, 0.0));
+  paintSide(garage, slot, 0);
   EXPECT_EQ(garage.complete().replaced, std::vector<std::int64_t>{slot.id});
   {
     Garage hidden = garage;
@@ -72,44 +78,24 @@ TEST(SlotDoubts, AFewPicturesDoNotOutweighAnArrow) {
 
 // Two bays' sides with a pillar or a lane's edge between them look like a slot in every picture.
 TEST(SlotDoubts, AGapBetweenBaysIsNoSlotHoweverOftenItIsTaken) {
-  const auto unpainted = [](Garage& garage) {
-    MapSlot slot = tellOneRarelySeen(garage);
-    garage.told.back().observations = 40;
-    for (const int side : {0, 1}) {
-      const Vector2d x(0.05, 0.0);
-      garage.fill(GridLayer::kParkingLines, SemanticClass::kSlotLine, slot.corners[side] - x,
-                  slot.corners[3 - side] + x);
-    }
-    return slot;
-  };
+  Garage open;
+  const MapSlot slot = tellOneRarelySeen(open);
+  open.told.back().observations = 40;
+  for (const std::size_t side : {0U, 1U}) paintSide(open, slot, side);
+  EXPECT_TRUE(open.complete().replaced.empty());
+  const Vector2d begin = slot.corners[0];
   {
-    Garage garage;
-    unpainted(garage);
-    EXPECT_TRUE(garage.complete().replaced.empty());
-  }
-  const auto foot = [](const MapSlot& slot) -> Vector2d {
-    return slot.corners[0] + Vector2d(1.0, 3.5);
-  };
-  const auto stand = [&](Garage& garage, const MapSlot& slot) {
-    garage.fill(GridLayer::kZoneMarkers, SemanticClass::kPillar, foot(slot),
-                foot(slot) + Vector2d(0.6, 0.6));
-  };
-  const auto edge = [](Garage& garage, const MapSlot& slot) {
-    garage.fill(GridLayer::kParkingLines, SemanticClass::kLaneLine,
-                slot.corners[0] - Vector2d(0.0, 0.1), slot.corners[0] + Vector2d(1.3, 0.1));
-  };
-  {
-    Garage garage;
-    const MapSlot slot = unpainted(garage);
-    stand(garage, slot);
+    Garage garage = open;
+    const Vector2d foot = begin + Vector2d(1.0, 3.5);
+    garage.fill(GridLayer::kZoneMarkers, SemanticClass::kPillar, foot, foot + Vector2d(0.6, 0.6));
     EXPECT_EQ(garage.complete().replaced, std::vector<std::int64_t>{slot.id});
     garage.number(slot);
     EXPECT_TRUE(garage.complete().replaced.empty());
   }
   {
-    Garage garage;
-    const MapSlot slot = unpainted(garage);
-    edge(garage, slot);
+    Garage garage = open;
+    garage.fill(GridLayer::kParkingLines, SemanticClass::kLaneLine, begin - Vector2d(0.0, 0.1),
+                begin + Vector2d(1.3, 0.1));
     EXPECT_EQ(garage.complete().replaced, std::vector<std::int64_t>{slot.id});
     garage.park(slot);
     EXPECT_TRUE(garage.complete().replaced.empty());

@@ -30,17 +30,21 @@ bool showsStop(const SlotEvidence& evidence) {
   return evidence.stop_m2 > kArea;
 }
 
-// An entrance between lane lines passes for one of them now and then. Numbers and wheel stops are
-// in slots only, and lines on the three other sides bound nothing else.
-bool isSlotAnyway(const SlotEvidence& evidence) {
-  constexpr double kPaint = 0.1;  // m^2
-  if (evidence.number_m2 > kPaint || evidence.stop_m2 > kPaint) return true;
+// Lines on the three sides other than the entrance bound nothing else than a slot.
+bool isBoundedAsSlots(const SlotEvidence& evidence) {
   const auto is_plain = [](const SlotEvidence::Line& line) {
     constexpr double kContrast = 0.6;
     constexpr double kSeen = 1.5;  // m
     return line.contrast() > kContrast && line.seen_m > kSeen;
   };
   return is_plain(evidence.left) && is_plain(evidence.right) && is_plain(evidence.rear);
+}
+
+// An entrance between lane lines passes for one of them now and then. Numbers and wheel stops are
+// in slots only.
+bool isSlotAnyway(const SlotEvidence& evidence) {
+  constexpr double kPaint = 0.1;  // m^2
+  return evidence.number_m2 > kPaint || evidence.stop_m2 > kPaint || isBoundedAsSlots(evidence);
 }
 
 // Of what few places but slots show.
@@ -131,7 +135,7 @@ bool isGapBetweenSlots(const SlotEvidence& evidence) {
   constexpr double kVehicle = 0.3;  // of its middle: smears of those beside it reach so far
   constexpr double kLaneAhead = 0.3;
   constexpr double kStructure = 0.025;  // a pillar's foot
-  if (isSlotAnyway(evidence) || showsNumber(evidence) || showsStop(evidence)) return false;
+  if (isBoundedAsSlots(evidence) || showsNumber(evidence) || showsStop(evidence)) return false;
   return evidence.vehicle_amid < kVehicle &&
          (evidence.lane_ahead > kLaneAhead || evidence.structure_inside > kStructure);
 }
