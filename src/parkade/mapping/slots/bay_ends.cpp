@@ -10,7 +10,9 @@
 #include "parkade/geometry/planar.hpp"
 #include "parkade/mapping/map_check.hpp"
 #include "parkade/mapping/slots/bay_stands.hpp"
+#include "parkade/mapping/slots/outlined_place.hpp"
 #include "parkade/mapping/slots/row_pattern.hpp"
+#include "parkade/mapping/slots/slot_axes.hpp"
 
 namespace parkade::slot_rows {
 namespace {
@@ -64,7 +66,10 @@ class BayEndFinder {
         best = corners;
       }
     }
-    if (!best || !hasRoom(*best)) return std::nullopt;
+    if (!best) return std::nullopt;
+    // Columns stand in the middle of slots along the aisle, which look alike from both sides.
+    if (stand.shape == SlotShape::kParallel) best = enteredFromFloor(*best, grid_);
+    if (!hasRoom(*best)) return std::nullopt;
     return weigh(*best, stand);
   }
 
@@ -148,6 +153,47 @@ class BayEndFinder {
            ahead(front, inward).painted < kBeyond;
   }
 
+  // As deep as a slot along the aisle, and no line that goes on: neither in front of the entrance
+  // nor behind the rear, where sides of slots into the row do.
+  [[nodiscard]] bool isShortSide(const SlotEvidence::Line& line, const Vector2d& front,
+                                 const Vector2d& rear) const {
+    constexpr double kContrast = 0.3;
+    constexpr double kLeast = 0.6;  // m of paint
+    constexpr double kBehind = 1.3;
+    constexpr double kBeyond = 0.3;
+    const Vector2d inward = (rear - front).normalized();
+    const SlotEvidence::Line behind =
+        lookAlong(grid_, rear + 2.0 * kPast * inward, rear + kBehind * inward);
+    return line.contrast() > kContrast && line.paint() > kLeast &&
+           ahead(front, inward).painted < kBeyond && behind.painted < kBeyond;
+  }
+
+  // One side of a slot along the aisle stands out as no other line does and the other shows, or it
+  // is none: cars stand beside single lines as well.
+  [[nodiscard]] std::optional<double> sidesAlongAisle(const SlotEvidence& e,
+                                                      const Corners& c) const {
+    const bool left = isShortSide(e.left, c[0], c[3]) && !isSideOfKnown(c[0]);
+    const bool right = isShortSide(e.right, c[1], c[2]) && !isSideOfKnown(c[1]);
+    if (left && right) return 2.0 * kStandsOut;
+    if (!left && !right) return std::nullopt;
+    if (isSideOfKnown(c[left ? 1 : 0])) return kStandsOut;
+    const double other = likelihood_.side(left ? e.right : e.left);
+    if (other <= 0.0) return std::nullopt;
+    return kStandsOut + other;
+  }
+
+  // The side beside the column stands out as no slot's along the aisle can, or it is none.
+  [[nodiscard]] std::optional<double> sidesIntoRow(const SlotEvidence& e, const Corners& c,
+                                                   bool is_right) const {
+    const Vector2d inward = (c[3] - c[0]).normalized();
+    const Vector2d& front = c[is_right ? 0 : 1];
+    const Vector2d& other = c[is_right ? 1 : 0];
+    if (isSideOfKnown(front) || !standsOut(is_right ? e.left : e.right, front, inward))
+      return std::nullopt;
+    if (isSideOfKnown(other)) return kStandsOut;
+    return kStandsOut + otherSide(is_right ? e.right : e.left, other, inward);
+  }
+
   // Where one side is plain to see the other is as well, if the floor is: of the slots that were
   // told it is missing in 3 of 100 (docs/math/slots.md), and they were told by their sides.
   [[nodiscard]] double otherSide(const SlotEvidence::Line& line, const Vector2d& front,
@@ -169,18 +215,15 @@ class BayEndFinder {
 
   [[nodiscard]] std::optional<BayEnd> weigh(const Corners& corners, const Stand& stand) const {
     const SlotEvidence e = gatherEvidence(grid_, corners);
-    const Vector2d inward = (corners[3] - corners[0]).normalized();
-    const Vector2d& front = corners[stand.is_right ? 0 : 1];
-    const Vector2d& other = corners[stand.is_right ? 1 : 0];
-    if (isDenied(e) || isSideOfKnown(front) ||
-        !standsOut(stand.is_right ? e.left : e.right, front, inward)) {
-      return std::nullopt;
-    }
+    if (isDenied(e)) return std::nullopt;
+    const std::optional<double> sides = stand.shape == SlotShape::kParallel
+                                            ? sidesAlongAisle(e, corners)
+                                            : sidesIntoRow(e, corners, stand.is_right);
+    if (!sides) return std::nullopt;
     constexpr double kPrior = -3.0;  // most columns have known slots beside them, or none
-    double log_odds = kPrior + kStandsOut + likelihood_.entrance(e.entrance) +
-                      SlotLikelihood::vehicle(e) + likelihood_.number(e) + likelihood_.stop(e);
-    if (!isSideOfKnown(other))
-      log_odds += otherSide(stand.is_right ? e.right : e.left, other, inward);
+    const double log_odds = kPrior + *sides + likelihood_.entrance(e.entrance) +
+                            SlotLikelihood::vehicle(e) + likelihood_.number(e) +
+                            likelihood_.stop(e);
     if (log_odds < options_.min_log_odds) return std::nullopt;
     BayEnd end;
     end.merit = log_odds + fit(corners);
@@ -210,23 +253,8 @@ class BayEndFinder {
   const RowCompletionOptions& options_;
 };
 
-}  // namespace
-
-std::vector<MapSlot> findBayEnds(const std::vector<MapSlot>& slots,
-                                 const std::vector<Vector2d>& pillars, const LayeredGrid& grid,
-                                 const SlotLikelihood& likelihood,
-                                 const RowCompletionOptions& options) {
-  const std::vector<Row> rows = findRows(slots);
-  const std::vector<Stand> stands = learnStands(rows, slots, pillars);
-  const BayEndFinder finder(slots, grid, likelihood, options);
-  std::vector<BayEnd> ends;
-  for (const Vector2d& u : directionsOf(rows)) {
-    for (const Vector2d& p : pillars) {
-      for (const Stand& stand : stands) {
-        if (const auto end = finder.find(p, u, stand)) ends.push_back(*end);
-      }
-    }
-  }
+// The best of those at one place.
+std::vector<MapSlot> withoutOverlaps(std::vector<BayEnd> ends) {
   std::stable_sort(ends.begin(), ends.end(),
                    [](const BayEnd& a, const BayEnd& b) { return a.merit > b.merit; });
   constexpr double kOverlap = 0.15;
@@ -236,6 +264,43 @@ std::vector<MapSlot> findBayEnds(const std::vector<MapSlot>& slots,
           return overlapShare(other.corners, end.slot.corners) > kOverlap;
         })) {
       found.push_back(end.slot);
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+std::vector<MapSlot> findBayEnds(const std::vector<MapSlot>& slots,
+                                 const std::vector<Vector2d>& pillars, const LayeredGrid& grid,
+                                 const SlotLikelihood& likelihood,
+                                 const RowCompletionOptions& options) {
+  const std::vector<Row> rows = findRows(slots);
+  const std::vector<Stand> stands = learnStands(rows, slots, pillars);
+  const std::vector<Vector2d> directions = directionsOf(rows);
+  std::vector<Vector2d> along_axes = directions;
+  if (const std::optional<double> axis = findAxis(slots)) {
+    constexpr double kOff = 2.0 * M_PI / 180.0;
+    std::erase_if(along_axes,
+                  [&](const Vector2d& u) { return std::abs(turnFromAxes(u, *axis)) > kOff; });
+  }
+  std::vector<MapSlot> known = slots;
+  std::vector<MapSlot> found;
+  // Those along the aisle first: their sides, half as long, are taken for others' otherwise.
+  for (const bool is_parallel : {true, false}) {
+    const BayEndFinder finder(known, grid, likelihood, options);
+    std::vector<BayEnd> ends;
+    for (const Vector2d& u : is_parallel ? along_axes : directions) {
+      for (const Vector2d& p : pillars) {
+        for (const Stand& stand : stands) {
+          if ((stand.shape == SlotShape::kParallel) != is_parallel) continue;
+          if (const auto end = finder.find(p, u, stand)) ends.push_back(*end);
+        }
+      }
+    }
+    for (const MapSlot& slot : withoutOverlaps(std::move(ends))) {
+      known.push_back(slot);
+      found.push_back(slot);
     }
   }
   return found;

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "parkade/mapping/slots/row_test_support.hpp"
 
 namespace parkade {
@@ -132,6 +134,79 @@ TEST(BayEnds, NeedsToHaveSeenSuchSlotsBesideColumns) {
   garage.paintSide(kFront - kDepth, kFront);
   garage.paintEntrance();
   garage.objects.erase(garage.objects.begin(), garage.objects.end() - 1);
+  EXPECT_TRUE(garage.complete().added.empty());
+}
+
+// Bays of one slot along the aisle each, three of which are known; the columns of a fourth stand at
+// x = 0 and kBay behind them, and it is entered from above.
+class SlotsAlongTheAisle : public Garage {
+ public:
+  static constexpr double kAside = 1.25;  // m from a column's middle
+  static constexpr double kDeep = 2.3;
+  static constexpr double kEntrance = 20.0;
+
+  SlotsAlongTheAisle() {
+    for (const GridLayer layer : {GridLayer::kParkingLines, GridLayer::kAvailability})
+      fill(layer, SemanticClass::kFloor, {-2.0, kEntrance - 4.0}, {12.0, kEntrance + 4.0});
+    for (const int bay : {0, 1, 2}) told.push_back(knownIn(bay));
+    for (const double x : {0.0, kBay}) {
+      MapObject pillar = objects.front();
+      pillar.id = 20 + static_cast<int>(x);
+      pillar.position = {x, kEntrance - 1.2, 0.0};
+      objects.push_back(pillar);
+    }
+    for (const MapSlot& slot : told) paintSides(slot, kDeep, kDeep);
+  }
+
+  static MapSlot knownIn(int bay) {
+    MapSlot slot = slotAt(bay, 0);
+    slot.shape = SlotShape::kParallel;
+    const Vector2d left(bay * kBay + kAside, 0.0);
+    const Vector2d front(kBay - 2.0 * kAside, 0.0);
+    const Vector2d side(0.0, kDeep);
+    slot.corners = {left, left + front, left + front + side, left + side};
+    return slot;
+  }
+  static MapSlot hidden() {
+    MapSlot slot = knownIn(0);
+    for (Vector2d& corner : slot.corners) corner = Vector2d(kBay, kEntrance) - corner;
+    return slot;
+  }
+  void paintSides(const MapSlot& slot, double left, double right) {
+    const Vector2d in = (slot.corners[3] - slot.corners[0]).normalized();
+    for (const auto& [front, length] :
+         {std::pair{slot.corners[0], left}, {slot.corners[1], right}}) {
+      const Vector2d rear = front + length * in;
+      fill(GridLayer::kParkingLines, SemanticClass::kSlotLine,
+           front.cwiseMin(rear) - Vector2d(0.05, 0.0), front.cwiseMax(rear) + Vector2d(0.05, 0.0));
+    }
+  }
+};
+
+TEST(BayEnds, ASlotAlongTheAisleStandsBetweenColumnsAsOthersDo) {
+  SlotsAlongTheAisle garage;
+  garage.paintSides(SlotsAlongTheAisle::hidden(), SlotsAlongTheAisle::kDeep, 1.0);
+  const RowCompletion rows = garage.complete();
+  ASSERT_EQ(rows.added.size(), 1U);
+  const MapSlot expected = SlotsAlongTheAisle::hidden();
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_LT((rows.added[0].corners[k] - expected.corners[k]).norm(), 0.2) << "corner " << k;
+  }
+  EXPECT_EQ(rows.added[0].shape, SlotShape::kParallel);
+  EXPECT_EQ(rows.added[0].observations, 0);
+}
+
+TEST(BayEnds, ACarBesideASingleLineIsInNoSlot) {
+  SlotsAlongTheAisle garage;
+  garage.paintSides(SlotsAlongTheAisle::hidden(), SlotsAlongTheAisle::kDeep, 0.0);
+  garage.park(SlotsAlongTheAisle::hidden());
+  EXPECT_TRUE(garage.complete().added.empty());
+}
+
+TEST(BayEnds, SidesOfSlotsAlongTheAisleEndAtTheirRear) {
+  SlotsAlongTheAisle garage;
+  garage.paintSides(SlotsAlongTheAisle::hidden(), kDepth, kDepth);
+  garage.park(SlotsAlongTheAisle::hidden());
   EXPECT_TRUE(garage.complete().added.empty());
 }
 

@@ -85,8 +85,7 @@ std::vector<Stand> learnStands(const std::vector<Row>& rows, const std::vector<M
   std::vector<Stand> stands;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     for (const Pattern& pattern : patterns[i]) {
-      if (pattern.of_row && pattern.shape != SlotShape::kParallel)
-        gatherStands(rows[i], pattern, slots, pillars, stands);
+      if (pattern.of_row) gatherStands(rows[i], pattern, slots, pillars, stands);
     }
   }
   return commonOf(std::move(stands));

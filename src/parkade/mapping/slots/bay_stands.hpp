@@ -33,7 +33,7 @@ struct Stand {
 };
 
 /// Those of the rows known that were found three times at least (by their medians), most often
-/// first. Slots along the aisle are left out.
+/// first.
 std::vector<Stand> learnStands(const std::vector<Row>& rows, const std::vector<MapSlot>& slots,
                                const std::vector<Eigen::Vector2d>& pillars);
 

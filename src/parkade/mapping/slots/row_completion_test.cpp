@@ -55,6 +55,23 @@ TEST(RowCompletion, WhatLiesBesideSlantedSlotsMustShowItsSide) {
   expectAt(rows.added[0], between);
 }
 
+// Two slots along the aisle leave a gap for a pillar, which the map need not hold.
+TEST(RowCompletion, WhatLiesBetweenSlotsAlongTheAisleIsNoSlotByItself) {
+  Garage garage;
+  garage.tell(1, {0, 1, 2});
+  for (const double x : {-7.5, 1.0}) {
+    MapSlot along = Garage::slotAt(0, 0);
+    along.id += static_cast<int>(x) + 30;
+    along.shape = SlotShape::kParallel;
+    along.corners = {Vector2d(x, 0.0), Vector2d(x + 6.0, 0.0), Vector2d(x + 6.0, 2.3),
+                     Vector2d(x, 2.3)};
+    garage.told.push_back(along);
+  }
+  garage.objects.clear();
+  garage.paintTold();
+  for (const MapSlot& slot : garage.complete().added) EXPECT_GT(slot.corners[0].x(), 6.5);
+}
+
 TEST(RowCompletion, TellsTheVehicleInIt) {
   Garage garage;
   garage.tell(0, {0, 2});

@@ -145,15 +145,26 @@ class GapFiller {
     });
   }
 
-  // Whether the slot that ends, or begins, at s has a side there that one of this shape would
-  // share: beside slanted slots there is a triangle that is none's.
-  [[nodiscard]] bool hasSideAt(double s, bool ends) const {
+  // The slot that ends, or begins, at s; null where there is none.
+  [[nodiscard]] const MapSlot* slotAt(double s, bool ends) const {
     constexpr double kInside = 0.3;
+    for (const Member& m : row_.members) {
+      if (std::abs((ends ? m.end : m.begin) - s) < kInside) return &told_[m.slot];
+    }
+    return nullptr;
+  }
+
+  // Whether a slot of this shape would share its side with this neighbour: beside slanted slots
+  // there is a triangle that is none's, and two slots along the aisle leave a gap for a pillar that
+  // is often as wide as a slot into the row.
+  [[nodiscard]] bool sharesSideWith(const MapSlot* neighbour) const {
+    return neighbour == nullptr || neighbour->shape == pattern_.shape;
+  }
+
+  // Whether a slot of this shape would begin, or end, with its line, if only for a piece.
+  [[nodiscard]] bool sharesLineWith(const MapSlot* neighbour) const {
     const bool is_slanted = pattern_.shape == SlotShape::kSlanted;
-    return std::none_of(row_.members.begin(), row_.members.end(), [&](const Member& m) {
-      return std::abs((ends ? m.end : m.begin) - s) < kInside &&
-             (told_[m.slot].shape == SlotShape::kSlanted) != is_slanted;
-    });
+    return neighbour == nullptr || (neighbour->shape == SlotShape::kSlanted) == is_slanted;
   }
 
   /// What bounds a gap.
@@ -162,6 +173,8 @@ class GapFiller {
     bool before_slot = false;
     bool past_begin = false;  // a slot on the other side of the pillar
     bool past_end = false;
+    bool knows_begin = false;  // the line there is that of a known slot
+    bool knows_end = false;
     [[nodiscard]] bool both() const { return after_slot && before_slot; }
     [[nodiscard]] bool none() const { return !after_slot && !before_slot; }
     [[nodiscard]] bool enclose() const {
@@ -169,9 +182,18 @@ class GapFiller {
     }
   };
   [[nodiscard]] Ends endsOf(const Gap& gap) const {
-    return {gap.at_begin == GapEnd::kSlot && hasSideAt(gap.begin, true),
-            gap.at_end == GapEnd::kSlot && hasSideAt(gap.end, false), hasSlotBy(gap.begin, true),
-            hasSlotBy(gap.end, false)};
+    Ends ends;
+    if (gap.at_begin == GapEnd::kSlot) {
+      ends.after_slot = sharesSideWith(slotAt(gap.begin, true));
+      ends.knows_begin = sharesLineWith(slotAt(gap.begin, true));
+    }
+    if (gap.at_end == GapEnd::kSlot) {
+      ends.before_slot = sharesSideWith(slotAt(gap.end, false));
+      ends.knows_end = sharesLineWith(slotAt(gap.end, false));
+    }
+    ends.past_begin = hasSlotBy(gap.begin, true);
+    ends.past_end = hasSlotBy(gap.end, false);
+    return ends;
   }
 
   // Between two slots there is hardly room for anything else; a bay between two pillars may hold
@@ -211,9 +233,9 @@ class GapFiller {
       is_bare = is_bare || likelihood_.lacksAllLines(e);
       shows_lines = shows_lines || showsLines(e);
       // Lines that known slots have as well say nothing new.
-      (i == 0 && ends.after_slot ? known : filling.merit) += likelihood_.side(e.left);
+      (i == 0 && ends.knows_begin ? known : filling.merit) += likelihood_.side(e.left);
       if (i + 1 == places.size())
-        (ends.before_slot ? known : filling.merit) += likelihood_.side(e.right);
+        (ends.knows_end ? known : filling.merit) += likelihood_.side(e.right);
       vehicles += SlotLikelihood::vehicle(e);
       filling.merit += likelihood_.number(e) + likelihood_.stop(e);
       entrance.painted += e.entrance.contrast() * e.entrance.seen_m;
