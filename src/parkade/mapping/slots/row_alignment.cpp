@@ -135,18 +135,33 @@ MapSlot squared(const MapSlot& slot) {
   return square;
 }
 
-// A slanted slot whose entrance runs neither along an aisle nor across one.
+// A slot with its sides askew whose entrance runs neither along an aisle nor across one.
 bool hasAskewEntrance(const MapSlot& slot, double axis) {
-  return slot.shape == SlotShape::kSlanted &&
+  return slot.shape != SlotShape::kParallel &&
          std::abs(turnFromAxes(inwardOf(slot), axis)) > kAskew &&
          std::abs(turnFromAxes(slot.corners[1] - slot.corners[0], axis)) > kAskew;
 }
 
-// Its entrance along the axis through the corner that lies farther out, its sides as they are.
-MapSlot straightened(const MapSlot& slot, double axis) {
+// Its entrance along u through the corner that lies farther out, its sides as they are.
+MapSlot straightened(const MapSlot& slot, const Vector2d& u) {
   const Vector2d front = slot.corners[1] - slot.corners[0];
-  const Vector2d along = axisAlong(front, axis);
-  return withEvenEntrance(slot, cross(along, front) / cross(along, inwardOf(slot)));
+  MapSlot even = withEvenEntrance(slot, cross(u, front) / cross(u, inwardOf(slot)));
+  even.shape = SlotShape::kSlanted;
+  return even;
+}
+
+// Whether both are slanted alike (8 degrees) with their entrances on one line (0.35 m), however far
+// along it: bays of one slanted slot each stand far apart.
+bool areSlantedAlike(const MapSlot& a, const MapSlot& b) {
+  constexpr double kAlike = 0.9903;  // cosine of 8 degrees
+  constexpr double kOff = 0.35;      // m
+  constexpr double kApart = 40.0;
+  const Vector2d u = (a.corners[1] - a.corners[0]).normalized();
+  const Vector2d between = b.entrance() - a.entrance();
+  return b.shape == SlotShape::kSlanted &&
+         u.dot((b.corners[1] - b.corners[0]).normalized()) > kAlike &&
+         inwardOf(a).dot(inwardOf(b)) > kAlike && between.norm() < kApart &&
+         std::abs(cross(u, between)) < kOff;
 }
 
 // Whether one of the others has its entrance on the slot's line, and none lies where the slot does.
@@ -157,9 +172,24 @@ bool isInAStraightRow(const MapSlot& slot, std::size_t index, const std::vector<
   for (std::size_t i = 0; i < slots.size(); ++i) {
     if (i == index) continue;
     if (overlapShare(slots[i].corners, slot.corners) > kOverlap) return false;
-    is_in_row = is_in_row || (!hasAskewEntrance(slots[i], axis) && areInOneRow(slot, slots[i]));
+    is_in_row = is_in_row || (!hasAskewEntrance(slots[i], axis) &&
+                              (areInOneRow(slot, slots[i]) || areSlantedAlike(slot, slots[i])));
   }
   return is_in_row;
+}
+
+// With its entrance along one of the axes, that which it is nearer to first, if it stands in a row
+// then.
+std::optional<MapSlot> straightenedInRow(const std::vector<MapSlot>& slots, std::size_t index,
+                                         double axis) {
+  const Vector2d front = slots[index].corners[1] - slots[index].corners[0];
+  const Vector2d nearer = axisAlong(front, axis);
+  const Vector2d other(-nearer.y(), nearer.x());
+  for (const Vector2d& u : {nearer, front.dot(other) > 0.0 ? other : Vector2d(-other)}) {
+    const MapSlot straight = straightened(slots[index], u);
+    if (isInAStraightRow(straight, index, slots, axis)) return straight;
+  }
+  return std::nullopt;
 }
 
 bool hasSides(const MapSlot& slot, const LayeredGrid& grid) {
@@ -177,9 +207,9 @@ SquaredSlots squareSlots(std::vector<MapSlot>& slots, const LayeredGrid& grid) {
   const std::vector<MapSlot> given = slots;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     if (hasAskewEntrance(given[i], *axis)) {
-      const MapSlot straight = straightened(given[i], *axis);
-      if (!isInAStraightRow(straight, i, given, *axis)) continue;
-      slots[i] = straight;
+      const std::optional<MapSlot> straight = straightenedInRow(given, i, *axis);
+      if (!straight) continue;
+      slots[i] = *straight;
       result.moved.push_back(i);
     }
     if (!isMisread(given[i], *axis)) continue;

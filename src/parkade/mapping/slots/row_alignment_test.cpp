@@ -19,6 +19,7 @@ using slot_rows::SquaredSlots;
 using slot_rows::squareSlots;
 using testing::expectAt;
 using testing::Garage;
+using testing::kBay;
 using testing::kDepth;
 
 // As pictures tell a slot whose right side is worn off at its end.
@@ -122,6 +123,32 @@ TEST_F(Squaring, SlantedSlotsHaveTheirEntranceOnTheirRow) {
   ASSERT_EQ(squared.moved, std::vector<std::size_t>{7});
   expectAt(garage_.told[7], slanted(2));
   EXPECT_EQ(garage_.told[7].shape, SlotShape::kSlanted);
+}
+
+// Its sides lean by 45 degrees, and what pictures see of the front is square to them.
+TEST_F(Squaring, SlantedSlotsReadAsSquareOnesStandOnTheLineOfOthersFarAlong) {
+  const auto leaning = [](int bay) {
+    MapSlot slot = slanted(0);
+    const Vector2d left(bay * kBay, 12.0);
+    slot.corners = {left, left + Vector2d(3.7, 0.0), left + Vector2d(7.3, 3.6),
+                    left + Vector2d(3.6, 3.6)};
+    return slot;
+  };
+  MapSlot read = leaning(2);
+  const Vector2d in = (read.corners[3] - read.corners[0]).normalized();
+  const double off = (read.corners[1] - read.corners[0]).dot(in);
+  read.corners[0] += off * in;
+  read.corners[3] += off * in;
+  garage_.told.push_back(leaning(0));
+  for (const SlotShape shape : {SlotShape::kSlanted, SlotShape::kPerpendicular}) {
+    garage_.told.resize(7);
+    read.shape = shape;
+    garage_.told.push_back(read);
+    ASSERT_EQ(square().moved, std::vector<std::size_t>{7});
+    for (const std::size_t k : {0U, 1U})
+      EXPECT_LT((garage_.told[7].corners[k] - leaning(2).corners[k]).norm(), 0.02) << k;
+    EXPECT_EQ(garage_.told[7].shape, SlotShape::kSlanted);
+  }
 }
 
 TEST_F(Squaring, AskewSlotsWithoutARowOrWithAnotherInTheirWayStay) {
