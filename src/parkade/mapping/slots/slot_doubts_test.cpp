@@ -148,5 +148,22 @@ TEST(SlotDoubts, AMisfitNeedNotTouchItsRow) {
   EXPECT_EQ(rows.added.size(), 3U);
 }
 
+// An arrow on a car's roof, a pillar that its smear is taken for.
+TEST(SlotDoubts, WhatAParkedCarIsReadAsDeniesNoSlotBetweenPlainSides) {
+  Garage garage;
+  garage.tell(0, {0, 2});
+  garage.paintTold();
+  const MapSlot between = Garage::slotAt(0, 1);
+  const Vector2d at = between.corners[0] + Vector2d(0.8, 1.0);
+  garage.fill(GridLayer::kRoadMarkers, SemanticClass::kArrow, at, at + Vector2d(0.8, 0.6));
+  garage.fill(GridLayer::kZoneMarkers, SemanticClass::kPillar, at, at + Vector2d(1.2, 1.2));
+  EXPECT_TRUE(garage.complete().added.empty());
+  garage.park(between);
+  const RowCompletion rows = garage.complete();
+  ASSERT_EQ(rows.added.size(), 1U);
+  expectAt(rows.added[0], between);
+  EXPECT_LT(rows.added[0].probability_free, 0.5);
+}
+
 }  // namespace
 }  // namespace parkade

@@ -30,14 +30,22 @@ bool showsStop(const SlotEvidence& evidence) {
   return evidence.stop_m2 > kArea;
 }
 
+bool isPlain(const SlotEvidence::Line& line) {
+  constexpr double kContrast = 0.6;
+  constexpr double kSeen = 1.5;  // m
+  return line.contrast() > kContrast && line.seen_m > kSeen;
+}
+
 // Lines on the three sides other than the entrance bound nothing else than a slot.
 bool isBoundedAsSlots(const SlotEvidence& evidence) {
-  const auto is_plain = [](const SlotEvidence::Line& line) {
-    constexpr double kContrast = 0.6;
-    constexpr double kSeen = 1.5;  // m
-    return line.contrast() > kContrast && line.seen_m > kSeen;
-  };
-  return is_plain(evidence.left) && is_plain(evidence.right) && is_plain(evidence.rear);
+  return isPlain(evidence.left) && isPlain(evidence.right) && isPlain(evidence.rear);
+}
+
+// A vehicle between two plain sides. What the layers hold there beside it is painted on it or reads
+// so: its smear lies on the ground from where the cameras look.
+bool holdsVehicle(const SlotEvidence& evidence) {
+  constexpr double kVehicle = 0.6;  // of its middle
+  return isPlain(evidence.left) && isPlain(evidence.right) && evidence.vehicle_amid > kVehicle;
 }
 
 // An entrance between lane lines passes for one of them now and then. Numbers and wheel stops are
@@ -151,9 +159,11 @@ bool isDenied(const SlotEvidence& evidence) {
   constexpr double kAside = 0.15;
   if (evidence.number_m2 > kSign && evidence.number_aside > kAside) return true;
   const bool has_lane_ahead = evidence.lane_ahead > kLaneAhead && !isSlotAnyway(evidence);
-  return evidence.markers_inside > kMarkers || evidence.lanes_inside > kLanes ||
-         evidence.lines_inside > kLines || evidence.structure_inside > kStructure ||
-         has_lane_ahead || evidence.divider > kDivider || isGapBetweenSlots(evidence);
+  const bool holds_others =
+      evidence.markers_inside > kMarkers || evidence.structure_inside > kStructure;
+  return (holds_others && !holdsVehicle(evidence)) || evidence.lanes_inside > kLanes ||
+         evidence.lines_inside > kLines || has_lane_ahead || evidence.divider > kDivider ||
+         isGapBetweenSlots(evidence);
 }
 
 void setFree(const SlotEvidence& evidence, MapSlot& slot) {
