@@ -3,7 +3,10 @@
 #include "parkade/tracking/detector.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
@@ -18,6 +21,30 @@ constexpr int kBorder = Patch::kRadius + 2;
 // Tries per cell: the best place may lie too close to a feature of the next cell.
 constexpr int kMaxTries = 4;
 constexpr TimeNs kNever = std::numeric_limits<TimeNs>::min();
+
+// Standard deviation (grey) of the pixels' noise: from the median second difference along rows,
+// which edges, being few, hardly change. Of white noise s that has a deviation of sqrt(6) s, and a
+// median of its size of 0.6745 times that.
+double noiseOf(const cv::Mat& image) {
+  constexpr int kRows = 8;  // one of so many
+  std::array<int, 1024> histogram{};
+  int count = 0;
+  for (int y = kRows / 2; y < image.rows; y += kRows) {
+    const std::uint8_t* row = image.ptr<std::uint8_t>(y);
+    for (int x = 1; x + 1 < image.cols; ++x) {
+      ++histogram[static_cast<std::size_t>(std::abs(row[x - 1] - 2 * row[x] + row[x + 1]))];
+      ++count;
+    }
+  }
+  int below = 0;
+  std::size_t level = 0;
+  while (below + histogram[level] < (count + 1) / 2) below += histogram[level++];
+  // Within its step, which rounding spreads from half below to half above.
+  const double share = histogram[level] > 0 ? (0.5 * count - below) / histogram[level] : 0.0;
+  const double middle = level == 0 ? 0.5 * share : static_cast<double>(level) - 0.5 + share;
+  constexpr double kMedian = 1.652;  // 0.6745 sqrt(6)
+  return middle / kMedian;
+}
 
 }  // namespace
 
@@ -46,6 +73,8 @@ std::vector<Corner> GridDetector::detect(const cv::Mat& image, const cv::Mat& ma
   const auto gradientOf = [](float eigenvalue) {
     return 127.5 * std::sqrt(std::max(eigenvalue, 0.0F));
   };
+  const double min_gradient =
+      std::max(options_.min_gradient, options_.min_gradient_noise * noiseOf(image));
   std::vector<Eigen::Vector2d> near = taken;
   std::vector<Corner> corners;
   cv::Mat scores;
@@ -84,7 +113,7 @@ std::vector<Corner> GridDetector::detect(const cv::Mat& image, const cv::Mat& ma
       cv::Point place;
       cv::minMaxLoc(inner, nullptr, &best, nullptr, &place);
       const double gradient = gradientOf(static_cast<float>(best));
-      if (gradient < options_.min_gradient) break;
+      if (gradient < min_gradient) break;
       // A maximum at the cell's edge may be the flank of a better corner beyond.
       const cv::Point at(place.x + grow, place.y + grow);
       double around = 0.0;

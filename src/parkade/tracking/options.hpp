@@ -14,6 +14,7 @@ struct DetectionOptions {
   double rest_s = 0.08;
   double min_distance_px = 10.0;
   double min_gradient = 3.0;
+  double min_gradient_noise = 1.2;
   int block_px = 5;
   void visit(OptionVisitor& v) {
     v.field("features", features, "count",
@@ -23,6 +24,10 @@ struct DetectionOptions {
     v.field("min_gradient", min_gradient, "grey/px",
             "Least gradient in a corner's weakest direction (root mean square over the block).", 0,
             255);
+    v.field("min_gradient_noise", min_gradient_noise, "ratio",
+            "The same as a multiple of the standard deviation of the picture's noise, where that "
+            "is more.",
+            0, 100);
     v.field("rest_s", rest_s, "s", "Time for which a cell without a corner is not looked at again.",
             0, 1);
     v.field("block_px", block_px, "px", "Side of the block whose gradients make a corner.", 3, 15);

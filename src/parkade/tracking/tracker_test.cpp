@@ -365,6 +365,30 @@ TEST(GridDetector, SpreadsCorners) {
   EXPECT_TRUE(detector.detect(cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar(90)), {}, {}).empty());
 }
 
+TEST(GridDetector, NoiseMakesNoCorners) {
+  DetectionOptions options;
+  options.features = 48;
+  const GridDetector detector(options, kWidth, kHeight);
+  for (const double sigma : {0.0, 2.0, 8.0}) {
+    cv::Mat image(kHeight, kWidth, CV_8UC1, cv::Scalar(60));
+    cv::rectangle(image, cv::Rect(90, 70, 80, 60), cv::Scalar(160), cv::FILLED);
+    cv::GaussianBlur(image, image, cv::Size(), 1.0);
+    cv::Mat noise(kHeight, kWidth, CV_16SC1);
+    cv::theRNG().state = 7;
+    cv::randn(noise, 0.0, sigma);
+    cv::add(image, noise, image, cv::noArray(), CV_8U);
+    const std::vector<Corner> corners = detector.detect(image, {}, {});
+    int real = 0;
+    for (const Corner& corner : corners) {
+      for (const Eigen::Vector2d& p : {Eigen::Vector2d(90.0, 70.0), Eigen::Vector2d(169.0, 70.0),
+                                       Eigen::Vector2d(90.0, 129.0), Eigen::Vector2d(169.0, 129.0)})
+        if ((corner.pixel - p).norm() < 4.0) ++real;
+    }
+    EXPECT_EQ(real, 4) << "noise of " << sigma;
+    EXPECT_LE(corners.size(), 6U) << "noise of " << sigma;
+  }
+}
+
 TEST(Patch, AlignsWarpGainAndOffset) {
   cv::Mat image(200, 200, CV_8UC1);
   cv::Mat other(200, 200, CV_8UC1);
