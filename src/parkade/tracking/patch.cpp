@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -46,6 +47,29 @@ double effectiveCount() {
   return kEffective;
 }
 
+// Offset, gain and the slope of brightness along x and y of a patch with these values, orthonormal
+// under the weights.
+std::array<Values, 4> changesOfLight(const Values& values) {
+  const Values& w = weights();
+  std::array<Values, 4> changes;
+  changes[0] = Values::Ones();
+  changes[1] = values;
+  int k = 0;
+  for (int y = -Patch::kRadius; y <= Patch::kRadius; ++y) {
+    for (int x = -Patch::kRadius; x <= Patch::kRadius; ++x, ++k) {
+      changes[2][k] = static_cast<float>(x);
+      changes[3][k] = static_cast<float>(y);
+    }
+  }
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j)
+      changes[i] -= w.cwiseProduct(changes[j]).dot(changes[i]) * changes[j];
+    const float size = std::sqrt(w.cwiseProduct(changes[i]).dot(changes[i]));
+    changes[i] /= std::max(size, 1e-6F);
+  }
+  return changes;
+}
+
 }  // namespace
 
 std::shared_ptr<const Patch> Patch::sample(const cv::Mat& image, const Eigen::Vector2d& pixel) {
@@ -73,12 +97,11 @@ std::shared_ptr<const Patch> Patch::sample(const cv::Mat& image, const Eigen::Ve
   const Values weighted = w.cwiseProduct(patch->values_);
   patch->variance_ = weighted.dot(patch->values_);
   if (patch->variance_ < kMinVariance) return nullptr;
-  // 2. Project out offset and gain: what they explain is no motion.
+  // 2. Project out what light explains: it is no motion.
+  const std::array<Values, 4> changes = changesOfLight(patch->values_);
   for (int a = 0; a < 6; ++a) {
     auto descent = patch->descent_.col(a);
-    const float offset = w.dot(descent);
-    const float gain = weighted.dot(descent) / static_cast<float>(patch->variance_);
-    descent -= gain * patch->values_ + Values::Constant(offset);
+    for (const Values& change : changes) descent -= w.cwiseProduct(change).dot(descent) * change;
   }
   // 3. Hessian, then the weights go into the descent images once and for all.
   const Eigen::Matrix<float, kCount, 6> plain = patch->descent_;

@@ -17,9 +17,9 @@ struct PatchAlignment {
   double sigma_px = 0.0;     ///< of the position, from the residual and the patch's gradients
 };
 
-/// A feature's look in one picture, and its alignment in others: affine warp, with gain and offset
-/// of the brightness projected out (inverse compositional; Baker & Matthews, "Lucas-Kanade 20 years
-/// on", IJCV 2004, and part 3, project-out). docs/math/tracking.md.
+/// A feature's look in one picture, and its alignment in others: affine warp, with gain, offset and
+/// slope of the brightness projected out (inverse compositional; Baker & Matthews, "Lucas-Kanade 20
+/// years on", IJCV 2004, and part 3, project-out). docs/math/tracking.md.
 class Patch {
  public:
   static constexpr int kRadius = 7;

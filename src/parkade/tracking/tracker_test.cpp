@@ -416,6 +416,29 @@ TEST(Patch, AlignsWarpGainAndOffset) {
   EXPECT_EQ(Patch::sample(cv::Mat(200, 200, CV_8UC1, cv::Scalar(9)), centre), nullptr);
 }
 
+// Lenses darken towards their edge: what moves across the picture gets a slope of brightness.
+TEST(Patch, ASlopeOfBrightnessIsNoMotion) {
+  cv::Mat image(200, 200, CV_8UC1);
+  cv::Mat other(200, 200, CV_8UC1);
+  const Eigen::Vector2d centre(100.0, 100.0);
+  const auto blob = [&](const Eigen::Vector2d& p) {  // bright, as lamps in the dark
+    return 90.0 + 80.0 * std::exp(-0.5 * (p - centre).squaredNorm() / (2.5 * 2.5));
+  };
+  for (int y = 0; y < 200; ++y) {
+    for (int x = 0; x < 200; ++x) {
+      const double value = blob({x, y});
+      image.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(value);
+      other.at<std::uint8_t>(y, x) =
+          cv::saturate_cast<std::uint8_t>(value - 0.8 * (x - centre.x()) + 0.4 * (y - centre.y()));
+    }
+  }
+  const auto patch = Patch::sample(image, centre);
+  ASSERT_NE(patch, nullptr);
+  const PatchAlignment found = patch->align(other, centre, Eigen::Matrix2d::Identity(), 1.0, 30);
+  EXPECT_TRUE(found.converged);
+  EXPECT_LT((found.pixel - centre).norm(), 0.03);
+}
+
 // Judges 80 points of which every fourth moves by itself.
 void expectOutliersFound(bool with_prior, double step, int most_wrong) {
   Random random(3);

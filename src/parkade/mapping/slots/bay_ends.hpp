@@ -19,7 +19,9 @@ namespace parkade::slot_rows {
 /// between its columns: where the slots of the rows known lie beside a column is learned, and
 /// beside every other column, in every direction that a row has, such a slot is looked for in the
 /// map's layers. It is told where the side line next to the column stands out, ends at the
-/// entrance, and the rest of the evidence makes it likely (docs/math/slots.md). `slots` are all
+/// entrance, and the rest of the evidence makes it likely (docs/math/slots.md). Slots along the
+/// aisle, of which a picture from across the lane shows little, are looked for in the same way: one
+/// of their sides stands out and ends at the rear as well, and the other shows. `slots` are all
 /// that are known; none of those returned overlaps one, or another. They have no observations.
 std::vector<MapSlot> findBayEnds(const std::vector<MapSlot>& slots,
                                  const std::vector<Eigen::Vector2d>& pillars,
