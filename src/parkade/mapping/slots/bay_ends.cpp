@@ -172,11 +172,13 @@ class BayEndFinder {
   // is none: cars stand beside single lines as well.
   [[nodiscard]] std::optional<double> sidesAlongAisle(const SlotEvidence& e,
                                                       const Corners& c) const {
-    const bool left = isShortSide(e.left, c[0], c[3]) && !isSideOfKnown(c[0]);
-    const bool right = isShortSide(e.right, c[1], c[2]) && !isSideOfKnown(c[1]);
+    const bool knows_left = isLineOfKnown(c[0], c[3]);
+    const bool knows_right = isLineOfKnown(c[1], c[2]);
+    const bool left = isShortSide(e.left, c[0], c[3]) && !knows_left;
+    const bool right = isShortSide(e.right, c[1], c[2]) && !knows_right;
     if (left && right) return 2.0 * kStandsOut;
     if (!left && !right) return std::nullopt;
-    if (isSideOfKnown(c[left ? 1 : 0])) return kStandsOut;
+    if (left ? knows_right : knows_left) return kStandsOut;
     const double other = likelihood_.side(left ? e.right : e.left);
     if (other <= 0.0) return std::nullopt;
     return kStandsOut + other;
@@ -211,6 +213,23 @@ class BayEndFinder {
     return std::any_of(slots_.begin(), slots_.end(), [&](const MapSlot& slot) {
       return std::min((slot.corners[0] - front).norm(), (slot.corners[1] - front).norm()) < kSame;
     });
+  }
+
+  // Nor does one that runs along any line of it, as an entrance of the next row does.
+  [[nodiscard]] bool isLineOfKnown(const Vector2d& front, const Vector2d& rear) const {
+    constexpr double kSame = 0.4;  // m
+    const Vector2d middle = 0.5 * (front + rear);
+    return isSideOfKnown(front) ||
+           std::any_of(slots_.begin(), slots_.end(), [&](const MapSlot& slot) {
+             for (std::size_t k = 0; k < 4; ++k) {
+               const Vector2d& from = slot.corners[k];
+               const Vector2d along = slot.corners[(k + 1) % 4] - from;
+               const double s =
+                   std::clamp((middle - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+               if ((from + s * along - middle).norm() < kSame) return true;
+             }
+             return false;
+           });
   }
 
   [[nodiscard]] std::optional<BayEnd> weigh(const Corners& corners, const Stand& stand) const {

@@ -203,6 +203,21 @@ TEST(BayEnds, ACarBesideASingleLineIsInNoSlot) {
   EXPECT_TRUE(garage.complete().added.empty());
 }
 
+// A row square to it is entered over what would be one of its sides.
+TEST(BayEnds, AnEntranceOfTheNextRowIsNoSide) {
+  SlotsAlongTheAisle garage;
+  const MapSlot hidden = SlotsAlongTheAisle::hidden();
+  garage.paintSides(hidden, SlotsAlongTheAisle::kDeep, SlotsAlongTheAisle::kDeep);
+  MapSlot square = hidden;
+  square.id = 77;
+  square.shape = SlotShape::kPerpendicular;
+  const Vector2d front = hidden.corners[0] + Vector2d(0.0, 0.7);
+  square.corners = {front, front - Vector2d(0.0, 3.6), front - Vector2d(-kDepth, 3.6),
+                    front + Vector2d(kDepth, 0.0)};
+  garage.told.push_back(square);
+  EXPECT_TRUE(garage.complete().added.empty());
+}
+
 TEST(BayEnds, SidesOfSlotsAlongTheAisleEndAtTheirRear) {
   SlotsAlongTheAisle garage;
   garage.paintSides(SlotsAlongTheAisle::hidden(), kDepth, kDepth);
