@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -12,6 +13,14 @@ namespace parkade {
 /// The cross product's component out of the plane: positive where b lies to the left of a.
 inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
+}
+
+/// How far p lies off the line from a to b, which are apart, with its ends.
+inline double distanceToSegment(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
+                                const Eigen::Vector2d& b) {
+  const Eigen::Vector2d along = b - a;
+  const double s = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (p - a - s * along).norm();
 }
 
 /// Into [-45, 45] degrees: what two directions differ by where quarter turns do not count.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "parkade/geometry/planar.hpp"
 #include "parkade/mapping/synthetic_plan.hpp"
 
 namespace parkade {
@@ -17,9 +18,7 @@ using testing::Plan;
 double distanceToLines(const Plan& plan, const Eigen::Vector2d& p) {
   double least = 1e9;
   for (const testing::PlanLine& line : plan.lines) {
-    const Eigen::Vector2d d = line.b - line.a;
-    const double t = std::clamp(d.dot(p - line.a) / d.squaredNorm(), 0.0, 1.0);
-    least = std::min(least, (p - line.a - t * d).norm());
+    least = std::min(least, distanceToSegment(p, line.a, line.b));
   }
   return least;
 }

@@ -21,19 +21,17 @@ using Eigen::Vector3d;
 struct SlotGround {
   explicit SlotGround(const MapSlot& slot)
       : entrance_left(slot.corners[0]),
-        entrance(slot.corners[1] - slot.corners[0]),
+        entrance_right(slot.corners[1]),
         inside(inset(slot.corners, kInside)) {}
 
   [[nodiscard]] bool holds(const Vector2d& p) const {
-    const double share =
-        std::clamp((p - entrance_left).dot(entrance) / entrance.squaredNorm(), 0.0, 1.0);
-    return (p - entrance_left - share * entrance).norm() < kEntrance || contains(inside, p);
+    return distanceToSegment(p, entrance_left, entrance_right) < kEntrance || contains(inside, p);
   }
 
   static constexpr double kInside = 0.3;    // m
   static constexpr double kEntrance = 0.4;  // m
   Vector2d entrance_left;
-  Vector2d entrance;
+  Vector2d entrance_right;
   std::array<Vector2d, 4> inside;
 };
 

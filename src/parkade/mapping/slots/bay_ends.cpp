@@ -77,6 +77,7 @@ class BayEndFinder {
   static constexpr double kOverlap = 0.15;
   static constexpr double kSurely = 0.4;  // too much of an overlap wherever it is shifted to
   static constexpr double kPast = 0.15;   // m, half a line and its error
+  static constexpr double kBeyond = 0.3;  // painted, where a line is taken to go on
   // One of two sides does, by chance one line in a hundred.
   static constexpr double kStandsOut = 3.9;
 
@@ -143,29 +144,30 @@ class BayEndFinder {
            !isTaken({left, right, right + kAisle * out, left + kAisle * out}, kSome);
   }
 
-  // Longer than a slot along the aisle is deep, and not beyond the entrance.
+  // Plainly, and not beyond the entrance.
+  [[nodiscard]] bool beginsAt(const SlotEvidence::Line& line, const Vector2d& front,
+                              const Vector2d& inward) const {
+    constexpr double kContrast = 0.3;
+    return line.contrast() > kContrast && ahead(front, inward).painted < kBeyond;
+  }
+
+  // Longer than a slot along the aisle is deep.
   [[nodiscard]] bool standsOut(const SlotEvidence::Line& line, const Vector2d& front,
                                const Vector2d& inward) const {
-    constexpr double kContrast = 0.3;
     constexpr double kLeast = 2.5;  // m
-    constexpr double kBeyond = 0.3;
-    return line.contrast() > kContrast && line.seen_m > kLeast &&
-           ahead(front, inward).painted < kBeyond;
+    return line.seen_m > kLeast && beginsAt(line, front, inward);
   }
 
   // As deep as a slot along the aisle, and no line that goes on: neither in front of the entrance
   // nor behind the rear, where sides of slots into the row do.
   [[nodiscard]] bool isShortSide(const SlotEvidence::Line& line, const Vector2d& front,
                                  const Vector2d& rear) const {
-    constexpr double kContrast = 0.3;
     constexpr double kLeast = 0.6;  // m of paint
     constexpr double kBehind = 1.3;
-    constexpr double kBeyond = 0.3;
     const Vector2d inward = (rear - front).normalized();
     const SlotEvidence::Line behind =
         lookAlong(grid_, rear + 2.0 * kPast * inward, rear + kBehind * inward);
-    return line.contrast() > kContrast && line.paint() > kLeast &&
-           ahead(front, inward).painted < kBeyond && behind.painted < kBeyond;
+    return line.paint() > kLeast && behind.painted < kBeyond && beginsAt(line, front, inward);
   }
 
   // One side of a slot along the aisle stands out as no other line does and the other shows, or it
@@ -219,17 +221,13 @@ class BayEndFinder {
   [[nodiscard]] bool isLineOfKnown(const Vector2d& front, const Vector2d& rear) const {
     constexpr double kSame = 0.4;  // m
     const Vector2d middle = 0.5 * (front + rear);
-    return isSideOfKnown(front) ||
-           std::any_of(slots_.begin(), slots_.end(), [&](const MapSlot& slot) {
-             for (std::size_t k = 0; k < 4; ++k) {
-               const Vector2d& from = slot.corners[k];
-               const Vector2d along = slot.corners[(k + 1) % 4] - from;
-               const double s =
-                   std::clamp((middle - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
-               if ((from + s * along - middle).norm() < kSame) return true;
-             }
-             return false;
-           });
+    if (isSideOfKnown(front)) return true;
+    for (const MapSlot& slot : slots_) {
+      const Corners& c = slot.corners;
+      for (std::size_t k = 0; k < 4; ++k)
+        if (distanceToSegment(middle, c[k], c[(k + 1) % 4]) < kSame) return true;
+    }
+    return false;
   }
 
   [[nodiscard]] std::optional<BayEnd> weigh(const Corners& corners, const Stand& stand) const {
@@ -304,7 +302,6 @@ std::vector<MapSlot> findBayEnds(const std::vector<MapSlot>& slots,
                   [&](const Vector2d& u) { return std::abs(turnFromAxes(u, *axis)) > kOff; });
   }
   std::vector<MapSlot> known = slots;
-  std::vector<MapSlot> found;
   // Those along the aisle first: their sides, half as long, are taken for others' otherwise.
   for (const bool is_parallel : {true, false}) {
     const BayEndFinder finder(known, grid, likelihood, options);
@@ -317,12 +314,10 @@ std::vector<MapSlot> findBayEnds(const std::vector<MapSlot>& slots,
         }
       }
     }
-    for (const MapSlot& slot : withoutOverlaps(std::move(ends))) {
-      known.push_back(slot);
-      found.push_back(slot);
-    }
+    const std::vector<MapSlot> found = withoutOverlaps(std::move(ends));
+    known.insert(known.end(), found.begin(), found.end());
   }
-  return found;
+  return {known.begin() + static_cast<std::ptrdiff_t>(slots.size()), known.end()};
 }
 
 }  // namespace parkade::slot_rows

@@ -25,7 +25,8 @@ struct Line {
   [[nodiscard]] double off(const Vector2d& p) const { return cross(u, p - origin); }
 };
 
-constexpr double kOnLine = 0.1;  // m
+constexpr double kOnLine = 0.1;    // m
+constexpr double kAlike = 0.9903;  // cosine of 8 degrees
 
 bool liesOn(const MapSlot& slot, const Line& line) {
   return std::abs(line.off(slot.corners[0])) < kOnLine &&
@@ -34,12 +35,11 @@ bool liesOn(const MapSlot& slot, const Line& line) {
 
 // Those with sides along those of the i-th, whatever their entrances.
 std::vector<const MapSlot*> neighboursOf(std::size_t i, const std::vector<MapSlot>& slots) {
-  constexpr double kNear = 12.0;        // m
-  constexpr double kParallel = 0.9903;  // cosine of 8 degrees
+  constexpr double kNear = 12.0;  // m
   std::vector<const MapSlot*> found;
   for (std::size_t j = 0; j < slots.size(); ++j) {
     if (j != i && (slots[j].entrance() - slots[i].entrance()).norm() < kNear &&
-        inwardOf(slots[i]).dot(inwardOf(slots[j])) > kParallel) {
+        inwardOf(slots[i]).dot(inwardOf(slots[j])) > kAlike) {
       found.push_back(&slots[j]);
     }
   }
@@ -153,8 +153,7 @@ MapSlot straightened(const MapSlot& slot, const Vector2d& u) {
 // Whether both are slanted alike (8 degrees) with their entrances on one line (0.35 m), however far
 // along it: bays of one slanted slot each stand far apart.
 bool areSlantedAlike(const MapSlot& a, const MapSlot& b) {
-  constexpr double kAlike = 0.9903;  // cosine of 8 degrees
-  constexpr double kOff = 0.35;      // m
+  constexpr double kOff = 0.35;  // m
   constexpr double kApart = 40.0;
   const Vector2d u = (a.corners[1] - a.corners[0]).normalized();
   const Vector2d between = b.entrance() - a.entrance();

@@ -184,12 +184,14 @@ class GapFiller {
   [[nodiscard]] Ends endsOf(const Gap& gap) const {
     Ends ends;
     if (gap.at_begin == GapEnd::kSlot) {
-      ends.after_slot = sharesSideWith(slotAt(gap.begin, true));
-      ends.knows_begin = sharesLineWith(slotAt(gap.begin, true));
+      const MapSlot* const neighbour = slotAt(gap.begin, true);
+      ends.after_slot = sharesSideWith(neighbour);
+      ends.knows_begin = sharesLineWith(neighbour);
     }
     if (gap.at_end == GapEnd::kSlot) {
-      ends.before_slot = sharesSideWith(slotAt(gap.end, false));
-      ends.knows_end = sharesLineWith(slotAt(gap.end, false));
+      const MapSlot* const neighbour = slotAt(gap.end, false);
+      ends.before_slot = sharesSideWith(neighbour);
+      ends.knows_end = sharesLineWith(neighbour);
     }
     ends.past_begin = hasSlotBy(gap.begin, true);
     ends.past_end = hasSlotBy(gap.end, false);

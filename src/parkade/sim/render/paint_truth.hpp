@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "parkade/geometry/planar.hpp"
 #include "parkade/sim/garage.hpp"
 #include "parkade/sim/world/polygon.hpp"
 
@@ -17,10 +18,8 @@ namespace parkade::sim::test {
 inline double borderDistance(const Polygon& polygon, const Eigen::Vector2d& p) {
   double nearest = 1e9;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Eigen::Vector2d& a = polygon[i];
-    const Eigen::Vector2d edge = polygon[(i + 1) % polygon.size()] - a;
-    const double s = std::clamp((p - a).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
-    nearest = std::min(nearest, (p - a - s * edge).norm());
+    nearest =
+        std::min(nearest, distanceToSegment(p, polygon[i], polygon[(i + 1) % polygon.size()]));
   }
   return nearest;
 }
