@@ -25,7 +25,13 @@ CameraTracker::CameraTracker(const RigCamera& camera, const TrackingOptions& opt
 void CameraTracker::setMask(const cv::Mat& mask) {
   PARKADE_CHECK(mask.type() == CV_8UC1 && mask.size() == static_mask_.size(),
                 "mask of {} x {}, type {}", mask.cols, mask.rows, mask.type());
-  static_mask_ = validityMask(camera_.camera) & (mask != 0);
+  // A patch must not show what is hidden: the own body stands still, and drags it along.
+  constexpr int kMargin = Patch::kRadius + 1;  // px
+  const cv::Mat disc =
+      cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * kMargin + 1, 2 * kMargin + 1});
+  cv::Mat clear;
+  cv::erode(mask != 0, clear, disc);
+  static_mask_ = validityMask(camera_.camera) & clear;
 }
 
 void CameraTracker::setDynamicMask(const cv::Mat& mask) {

@@ -65,7 +65,8 @@ class Tracker {
   TrackSet track(const FrameSet& frames, const MotionPrior& prior);
 
   /// Hides a part of a camera's images for good (0: hidden; CV_8UC1 of the image's size), such as
-  /// the own body; readBodyMasks() reads those of a rig.
+  /// the own body, and what lies so near to it that a feature's patch would show it;
+  /// readBodyMasks() reads those of a rig.
   void setMask(int camera, const cv::Mat& mask);
   /// The same for the next frame set only: vehicles and people.
   void setDynamicMask(int camera, const cv::Mat& mask);
