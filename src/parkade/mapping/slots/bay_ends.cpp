@@ -219,15 +219,9 @@ class BayEndFinder {
 
   // Nor does one that runs along any line of it, as an entrance of the next row does.
   [[nodiscard]] bool isLineOfKnown(const Vector2d& front, const Vector2d& rear) const {
-    constexpr double kSame = 0.4;  // m
-    const Vector2d middle = 0.5 * (front + rear);
-    if (isSideOfKnown(front)) return true;
-    for (const MapSlot& slot : slots_) {
-      const Corners& c = slot.corners;
-      for (std::size_t k = 0; k < 4; ++k)
-        if (distanceToSegment(middle, c[k], c[(k + 1) % 4]) < kSame) return true;
-    }
-    return false;
+    return isSideOfKnown(front) ||
+           std::any_of(slots_.begin(), slots_.end(),
+                       [&](const MapSlot& slot) { return liesOnLineOf(slot, front, rear); });
   }
 
   [[nodiscard]] std::optional<BayEnd> weigh(const Corners& corners, const Stand& stand) const {

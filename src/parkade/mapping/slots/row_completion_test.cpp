@@ -11,6 +11,7 @@
 #include "parkade/mapping/slots/row_pattern.hpp"
 #include "parkade/mapping/slots/row_test_support.hpp"
 #include "parkade/mapping/slots/slot_plausibility.hpp"
+#include "parkade/mapping/slots/slot_row.hpp"
 
 namespace parkade {
 namespace {
@@ -80,114 +81,6 @@ TEST(RowCompletion, TellsTheVehicleInIt) {
   const RowCompletion rows = garage.complete();
   ASSERT_EQ(rows.added.size(), 1U);
   EXPECT_LT(rows.added[0].probability_free, 0.2);
-}
-
-TEST(RowCompletion, FillsABayThatShowsItsPaint) {
-  Garage garage;
-  garage.tell(0, {0, 1, 2});
-  garage.tell(2, {0, 1, 2});
-  garage.paintTold();
-  for (const int place : {0, 2}) garage.paint(Garage::slotAt(1, place));
-  const RowCompletion rows = garage.complete();
-  ASSERT_EQ(rows.added.size(), 3U);
-  for (int place = 0; place < 3; ++place) {
-    expectAt(rows.added[static_cast<std::size_t>(place)], Garage::slotAt(1, place));
-  }
-}
-
-// Three slots of the row's width would fit as well, but a line goes in amid the second.
-TEST(RowCompletion, FillsABayWithTwoWideSlots) {
-  Garage garage;
-  garage.tell(0, {0, 1, 2});
-  garage.tell(2, {0, 1, 2});
-  garage.paintTold();
-  std::vector<MapSlot> wide;
-  for (int place = 0; place < 2; ++place) {
-    MapSlot slot = Garage::slotAt(1, 0);
-    const double x = slot.corners[0].x() + 1.5 * kWidth * place;
-    slot.corners = {Vector2d(x, 0.0), Vector2d(x + 1.5 * kWidth, 0.0),
-                    Vector2d(x + 1.5 * kWidth, kDepth), Vector2d(x, kDepth)};
-    wide.push_back(slot);
-    garage.paint(slot);
-  }
-  const RowCompletion rows = garage.complete();
-  ASSERT_EQ(rows.added.size(), 2U);
-  for (std::size_t i = 0; i < 2; ++i) expectAt(rows.added[i], wide[i]);
-}
-
-TEST(RowCompletion, LeavesABareBayAlone) {
-  Garage garage;
-  garage.tell(0, {0, 1, 2});
-  garage.tell(2, {0, 1, 2});
-  garage.paintTold();
-  EXPECT_TRUE(garage.complete().added.empty());
-}
-
-// Two that wait where an aisle crosses between bays full of slots: the third place would be a free
-// one in plain sight without a line. Where one is painted it is a bay.
-TEST(RowCompletion, CarsInABareBayMakeNoSlots) {
-  for (const bool has_paint : {true, false}) {
-    Garage garage;
-    garage.tell(0, {0, 1, 2});
-    garage.tell(2, {0, 1, 2});
-    garage.paintTold();
-    for (const int place : {0, 1}) garage.park(Garage::slotAt(1, place));
-    if (has_paint) garage.paint(Garage::slotAt(1, 2));
-    EXPECT_EQ(garage.complete().added.size(), has_paint ? 3U : 0U);
-  }
-}
-
-// Between bays full of slots a parked vehicle and one line are enough, beyond them not.
-TEST(RowCompletion, BelievesABayBetweenTwoOthersSooner) {
-  for (const bool between : {true, false}) {
-    Garage garage;
-    garage.tell(0, {0, 1, 2});
-    if (between) garage.tell(2, {0, 1, 2});
-    garage.paintTold();
-    MapSlot first = Garage::slotAt(1, 0);
-    garage.park(first);
-    for (double y = 0.5; y < 3.0; y += 0.05) {
-      garage.fill(GridLayer::kParkingLines, SemanticClass::kSlotLine,
-                  first.corners[1] + Vector2d(-0.05, y),
-                  first.corners[1] + Vector2d(0.05, y + 0.05));
-    }
-    EXPECT_EQ(garage.complete().added.size(), between ? 3U : 0U);
-  }
-}
-
-// The rest of a bay, with one parked vehicle and no paint, where the next bay holds slots as well.
-TEST(RowCompletion, BelievesTheRestOfABayBesideAnotherSooner) {
-  for (const bool beside : {true, false}) {
-    Garage garage;
-    garage.tell(0, {0});
-    if (beside) garage.tell(1, {0, 1, 2});
-    garage.paintTold();
-    garage.park(Garage::slotAt(0, 1));
-    EXPECT_EQ(garage.complete().added.size(), beside ? 2U : 0U);
-  }
-}
-
-// Next to a wide slot that stands alone a bay shows its outer lines and vehicles: two wide slots
-// would fit as well.
-TEST(RowCompletion, UsualSlotsAreMoreLikelyThanWideOnes) {
-  Garage garage;
-  MapSlot wide = Garage::slotAt(0, 2);
-  for (const std::size_t k : {0U, 3U}) wide.corners[k].x() -= 0.5 * kWidth;
-  garage.told.push_back(wide);
-  garage.tell(3, {0, 1, 2});
-  garage.paintTold();
-  const double left = kBay + kMargin;
-  const double right = 2.0 * kBay - kMargin;
-  for (const double x : {left, right}) {
-    garage.fill(GridLayer::kParkingLines, SemanticClass::kSlotLine, {x - 0.05, 0.0},
-                {x + 0.05, kDepth});
-  }
-  for (int place = 0; place < 3; ++place) garage.park(Garage::slotAt(1, place));
-  const RowCompletion rows = garage.complete();
-  ASSERT_EQ(rows.added.size(), 3U);
-  for (int place = 0; place < 3; ++place) {
-    expectAt(rows.added[static_cast<std::size_t>(place)], Garage::slotAt(1, place));
-  }
 }
 
 TEST(RowCompletion, LeavesPlacesWithMarkingsForWhoDrivesAlone) {
@@ -396,6 +289,19 @@ TEST(SlotRow, SlantedSlotsLeaveOtherMarginsBeforeThanAfter) {
   EXPECT_NEAR(patterns[0].before[1].length, 1.0, 1e-9);
   EXPECT_EQ(patterns[0].before[1].seen, 3);
   EXPECT_TRUE(patterns[0].after.empty());  // 4 m is no margin: a slot fits in
+}
+
+TEST(SlotRow, ALineMayLieOnOneOfASlot) {
+  const MapSlot slot = Garage::slotAt(0, 0);
+  const Vector2d left = slot.corners[0];
+  const Vector2d right = slot.corners[1];
+  EXPECT_TRUE(slot_rows::liesOnLineOf(slot, left + Vector2d(0.3, 0.2), right));
+  EXPECT_TRUE(slot_rows::liesOnLineOf(slot, slot.corners[2], right + Vector2d(0.2, 1.0)));
+  EXPECT_FALSE(
+      slot_rows::liesOnLineOf(slot, left + Vector2d(0.0, 0.6), right + Vector2d(0.0, 0.6)));
+  const Vector2d middle = 0.5 * (left + right);  // crosses the entrance
+  EXPECT_FALSE(
+      slot_rows::liesOnLineOf(slot, middle - Vector2d(0.0, 1.0), middle + Vector2d(0.0, 1.0)));
 }
 
 TEST(SlotPlausibility, APillarInTheWayInDeniesASlot) {

@@ -3,6 +3,7 @@
 #include "parkade/mapping/slots/row_filling.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -215,6 +216,18 @@ class GapFiller {
     return prior;
   }
 
+  // As an entrance of the next row passes for the side of a slot along the aisle.
+  [[nodiscard]] bool isLineOfOtherRow(const Vector2d& front, const Vector2d& rear) const {
+    for (std::size_t i = 0; i < told_.size(); ++i) {
+      if (liesOnLineOf(told_[i], front, rear) &&
+          std::none_of(row_.members.begin(), row_.members.end(),
+                       [&](const Member& m) { return m.slot == i; })) {
+        return true;
+      }
+    }
+    return false;
+  }
+
   [[nodiscard]] bool showsLines(const SlotEvidence& e) const {
     return std::max({likelihood_.side(e.left), likelihood_.side(e.right),
                      likelihood_.entrance(e.entrance)}) > 0.0;
@@ -222,6 +235,7 @@ class GapFiller {
 
   [[nodiscard]] Filling weigh(const Gap& gap, const std::vector<Place>& places,
                               bool are_wide) const {
+    constexpr double kLeastSeen = 0.15;  // of a slot
     const Ends ends = endsOf(gap);
     Filling filling;
     SlotEvidence::Line entrance;
@@ -232,12 +246,18 @@ class GapFiller {
     for (std::size_t i = 0; i < places.size(); ++i) {
       const SlotEvidence& e = places[i].evidence;
       if (isDenied(e) || (!ends.enclose() && likelihood_.lacksSide(e))) return {};
+      // Several wide ones fill any gap: where nobody looked a pillar may stand between usual ones.
+      if (are_wide && e.seen < kLeastSeen) return {};
       is_bare = is_bare || likelihood_.lacksAllLines(e);
       shows_lines = shows_lines || showsLines(e);
       // Lines that known slots have as well say nothing new.
-      (i == 0 && ends.knows_begin ? known : filling.merit) += likelihood_.side(e.left);
-      if (i + 1 == places.size())
-        (ends.knows_end ? known : filling.merit) += likelihood_.side(e.right);
+      const std::array<Vector2d, 4>& c = places[i].slot.corners;
+      const bool knows_left = (i == 0 && ends.knows_begin) || isLineOfOtherRow(c[0], c[3]);
+      (knows_left ? known : filling.merit) += likelihood_.side(e.left);
+      if (i + 1 == places.size()) {
+        const bool knows_right = ends.knows_end || isLineOfOtherRow(c[1], c[2]);
+        (knows_right ? known : filling.merit) += likelihood_.side(e.right);
+      }
       vehicles += SlotLikelihood::vehicle(e);
       filling.merit += likelihood_.number(e) + likelihood_.stop(e);
       entrance.painted += e.entrance.contrast() * e.entrance.seen_m;

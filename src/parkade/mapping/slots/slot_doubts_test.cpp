@@ -163,6 +163,10 @@ TEST(SlotDoubts, WhatAParkedCarIsReadAsDeniesNoSlotBetweenPlainSides) {
   ASSERT_EQ(rows.added.size(), 1U);
   expectAt(rows.added[0], between);
   EXPECT_LT(rows.added[0].probability_free, 0.5);
+  // The vehicle hides most of the sides.
+  garage.fill(GridLayer::kParkingLines, SemanticClass::kUnknown,
+              between.corners[0] + Vector2d(-0.2, 1.4), between.corners[2] + Vector2d(0.2, 0.2));
+  EXPECT_EQ(garage.complete().added.size(), 1U);
 }
 
 }  // namespace

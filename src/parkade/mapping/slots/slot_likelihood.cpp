@@ -41,11 +41,18 @@ bool isBoundedAsSlots(const SlotEvidence& evidence) {
   return isPlain(evidence.left) && isPlain(evidence.right) && isPlain(evidence.rear);
 }
 
-// A vehicle between two plain sides. What the layers hold there beside it is painted on it or reads
-// so: its smear lies on the ground from where the cameras look.
+// Of which a vehicle may hide most.
+bool isPainted(const SlotEvidence::Line& line) {
+  constexpr double kContrast = 0.5;
+  constexpr double kPaint = 0.5;  // m
+  return line.contrast() > kContrast && line.paint() > kPaint;
+}
+
+// A vehicle between two painted sides. What the layers hold there beside it is painted on it or
+// reads so: its smear lies on the ground from where the cameras look.
 bool holdsVehicle(const SlotEvidence& evidence) {
   constexpr double kVehicle = 0.6;  // of its middle
-  return isPlain(evidence.left) && isPlain(evidence.right) && evidence.vehicle_amid > kVehicle;
+  return isPainted(evidence.left) && isPainted(evidence.right) && evidence.vehicle_amid > kVehicle;
 }
 
 // An entrance between lane lines passes for one of them now and then. Numbers and wheel stops are

@@ -84,6 +84,22 @@ bool areInOneRow(const MapSlot& a, const MapSlot& b) {
          std::abs(cross((u + v).normalized(), between)) < kOff;
 }
 
+bool liesOnLineOf(const MapSlot& slot, const Vector2d& from, const Vector2d& to) {
+  constexpr double kSame = 0.4;      // m
+  constexpr double kCosine = 0.966;  // of 15 degrees
+  const Vector2d middle = 0.5 * (from + to);
+  const Vector2d along = (to - from).normalized();
+  for (std::size_t k = 0; k < slot.corners.size(); ++k) {
+    const Vector2d& a = slot.corners[k];
+    const Vector2d& b = slot.corners[(k + 1) % slot.corners.size()];
+    if (std::abs(along.dot((b - a).normalized())) > kCosine &&
+        distanceToSegment(middle, a, b) < kSame) {
+      return true;
+    }
+  }
+  return false;
+}
+
 std::vector<Row> findRows(const std::vector<MapSlot>& slots) {
   std::vector<std::size_t> root(slots.size());
   std::iota(root.begin(), root.end(), 0U);

@@ -31,6 +31,10 @@ struct Row {
 /// Whether both are entered the same way (6 degrees), over one line (0.35 m), 14 m apart at most.
 bool areInOneRow(const MapSlot& a, const MapSlot& b);
 
+/// Whether a line from `from` to `to` lies on one of the slot's four (0.4 m at its middle, 15
+/// degrees), as a line of a slot lies on the entrance of the next row.
+bool liesOnLineOf(const MapSlot& slot, const Eigen::Vector2d& from, const Eigen::Vector2d& to);
+
 std::vector<Row> findRows(const std::vector<MapSlot>& slots);
 
 }  // namespace parkade::slot_rows
