@@ -159,15 +159,17 @@ class BayEndFinder {
   }
 
   // As deep as a slot along the aisle, and no line that goes on: neither in front of the entrance
-  // nor behind the rear, where sides of slots into the row do.
+  // nor behind the rear, where sides of slots into the row do, and the edges of an aisle.
   [[nodiscard]] bool isShortSide(const SlotEvidence::Line& line, const Vector2d& front,
                                  const Vector2d& rear) const {
     constexpr double kLeast = 0.6;  // m of paint
     constexpr double kBehind = 1.3;
+    constexpr double kSeen = 0.7;
     const Vector2d inward = (rear - front).normalized();
     const SlotEvidence::Line behind =
         lookAlong(grid_, rear + 2.0 * kPast * inward, rear + kBehind * inward);
-    return line.paint() > kLeast && behind.painted < kBeyond && beginsAt(line, front, inward);
+    return line.paint() > kLeast && behind.seen_m > kSeen && behind.painted < kBeyond &&
+           beginsAt(line, front, inward);
   }
 
   // One side of a slot along the aisle stands out as no other line does and the other shows, or it

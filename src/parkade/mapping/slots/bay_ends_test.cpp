@@ -218,10 +218,19 @@ TEST(BayEnds, AnEntranceOfTheNextRowIsNoSide) {
   EXPECT_TRUE(garage.complete().added.empty());
 }
 
+// As edges of an aisle do not, of which the first metres are in sight.
 TEST(BayEnds, SidesOfSlotsAlongTheAisleEndAtTheirRear) {
+  const MapSlot hidden = SlotsAlongTheAisle::hidden();
   SlotsAlongTheAisle garage;
-  garage.paintSides(SlotsAlongTheAisle::hidden(), kDepth, kDepth);
-  garage.park(SlotsAlongTheAisle::hidden());
+  garage.park(hidden);
+  SlotsAlongTheAisle seen_in_part = garage;
+  seen_in_part.paintSides(hidden, SlotsAlongTheAisle::kDeep, SlotsAlongTheAisle::kDeep);
+  EXPECT_EQ(seen_in_part.complete().added.size(), 1U);
+  const Vector2d rear = hidden.corners[2].cwiseMin(hidden.corners[3]);
+  seen_in_part.fill(GridLayer::kParkingLines, SemanticClass::kUnknown, rear - Vector2d(1.0, 1.6),
+                    rear + Vector2d(8.0, -0.3));
+  EXPECT_TRUE(seen_in_part.complete().added.empty());
+  garage.paintSides(hidden, kDepth, kDepth);
   EXPECT_TRUE(garage.complete().added.empty());
 }
 
