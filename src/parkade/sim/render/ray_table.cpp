@@ -3,6 +3,7 @@
 #include "parkade/sim/render/ray_table.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "parkade/core/check.hpp"
@@ -28,6 +29,13 @@ RayTable::RayTable(const Camera& camera, int grid, const Eigen::Vector2d& offset
   axis_cosine_.resize(spread_.size(), 0.0F);
   parallelFor(threads, static_cast<std::size_t>(height_),
               [&](std::size_t y) { fillRow(camera, static_cast<int>(y)); });
+}
+
+Eigen::Vector2d RayTable::samplePlace(int k) {
+  constexpr std::array<double, 4> kX = {-0.125, 0.375, -0.375, 0.125};
+  constexpr std::array<double, 4> kY = {-0.375, -0.125, 0.125, 0.375};
+  const auto at = static_cast<std::size_t>(k);
+  return {kX[at], kY[at]};
 }
 
 std::vector<std::int32_t> RayTable::makeSlots() const {
@@ -59,9 +67,7 @@ void RayTable::fillTile(const Camera& camera, int tile, const Eigen::Vector2d& o
       const int x = tile % tiles_x_ * kTile + pixel_of_tile % kTile;
       const int y = tile / tiles_x_ * kTile + pixel_of_tile / kTile;
       Eigen::Vector2d pixel = Eigen::Vector2d(x, y) + offset_px;
-      if (grid_ == 2) {
-        pixel += Eigen::Vector2d(sample % 2 - 0.5, sample / 2 - 0.5) * 0.5;
-      }
+      if (grid_ == 2) pixel += samplePlace(sample);
       Eigen::Vector3d ray;
       packet.x[lane] = packet.y[lane] = 0.0F;
       packet.z[lane] = 1.0F;

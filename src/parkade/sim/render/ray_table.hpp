@@ -11,8 +11,8 @@
 
 namespace parkade::sim {
 
-/// The rays of a camera's pixels, unprojected once: any camera model then costs the same. Samples
-/// lie on a grid of 1 x 1 or 2 x 2 places per pixel, in packets of sixteen near each other.
+/// The rays of a camera's pixels, unprojected once: any camera model then costs the same. Of each
+/// pixel one sample is taken or four (samplePlace), in packets of sixteen near each other.
 class RayTable {
  public:
   static constexpr int kTile = 16;  ///< pixels a side
@@ -30,7 +30,11 @@ class RayTable {
     float cosine = -1.0F;  ///< of its half angle
   };
 
-  /// grid: samples per pixel along each axis, 1 or 2. offset_px moves all samples (sub-frames).
+  /// Where sample k of four lies, px from the pixel's middle: on a square turned by 26.6 degrees
+  /// (rotated grid), so that edges along rows and columns cross the samples one by one.
+  static Eigen::Vector2d samplePlace(int k);
+
+  /// grid: the root of the samples per pixel, 1 or 2. offset_px moves all samples (sub-frames).
   RayTable(const Camera& camera, int grid, const Eigen::Vector2d& offset_px, int threads = 1);
 
   [[nodiscard]] int width() const { return width_; }

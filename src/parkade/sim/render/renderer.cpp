@@ -63,8 +63,7 @@ int Renderer::addCamera(const Camera& camera) {
   tables->lens_share = sensor_.lensShare(tables->picture.axisCosines());
   if (options_.sensor.motion_blur > 1) {
     for (int k = 0; k < 4; ++k) {
-      tables->sub_frames.emplace_back(camera, 1, Eigen::Vector2d(k % 2 - 0.5, k / 2 - 0.5) * 0.5,
-                                      threads);
+      tables->sub_frames.emplace_back(camera, 1, RayTable::samplePlace(k), threads);
     }
   }
   cameras_.push_back(std::move(tables));

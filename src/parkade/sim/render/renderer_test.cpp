@@ -4,10 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <vector>
 
 #include "parkade/core/check.hpp"
+#include "parkade/sim/render/ray_table.hpp"
 #include "parkade/sim/render/test_scene.hpp"
 
 namespace parkade::sim {
@@ -100,6 +103,17 @@ TEST(Renderer, FastPicturesHaveSmoothEdges) {
   }
   EXPECT_GT(edges, 100);
   EXPECT_GT(alike, 0.85 * edges) << alike << " of " << edges;
+}
+
+// An upright or level edge that moves across a pixel passes its samples a quarter pixel apart.
+TEST(Renderer, EdgesMeetSamplesOneByOne) {
+  for (const int axis : {0, 1}) {
+    std::vector<double> places;
+    for (int k = 0; k < 4; ++k) places.push_back(RayTable::samplePlace(k)[axis]);
+    std::sort(places.begin(), places.end());
+    for (std::size_t k = 0; k < 4; ++k)
+      EXPECT_DOUBLE_EQ(places[k], 0.25 * (static_cast<double>(k) - 1.5)) << "axis " << axis;
+  }
 }
 
 TEST(Renderer, NoiseDependsOnFrameAndCamera) {
