@@ -17,4 +17,11 @@ namespace parkade::slot_rows {
 /// with more known floor before it. docs/math/slots.md. Returns the indices of those turned.
 std::vector<std::size_t> turnBlockedSlots(std::vector<MapSlot>& told, const LayeredGrid& grid);
 
+/// The last slot of a row that is entered from another aisle shows this one its long side, and is
+/// told as one along it. Where it is as long as slots into rows may be deep and no other along an
+/// aisle is, its far side was not in sight and another slot stands before one of its ends, it is
+/// entered by the other end, and as wide as those slots. docs/math/slots.md. Returns the indices of
+/// those turned.
+std::vector<std::size_t> turnSidewaysSlots(std::vector<MapSlot>& told, const LayeredGrid& grid);
+
 }  // namespace parkade::slot_rows

@@ -70,6 +70,7 @@ class RowCompleter {
     noteMoved(squared.moved);
     dropTold(squared.wrong);
     noteMoved(slot_rows::turnBlockedSlots(told_, grid));
+    noteMoved(slot_rows::turnSidewaysSlots(told_, grid));
     noteMoved(slot_rows::turnToAxes(told_));
     noteMoved(slot_rows::alignRows(told_));
     gatherMissing();

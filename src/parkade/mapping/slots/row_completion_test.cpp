@@ -170,6 +170,43 @@ TEST(RowCompletion, TurnsASlotThatIsToldFromABlockedEnd) {
   EXPECT_EQ(rows.added[0].shape, SlotShape::kParallel);
 }
 
+// A row square to this one, entered from the right, of which the first slot's side is seen.
+TEST(RowCompletion, TurnsASlotThatIsSeenFromItsSide) {
+  for (const bool is_like_others : {false, true}) {
+    Garage garage(1.9);
+    garage.tell(0, {0, 1, 2});
+    garage.tell(3, {0});
+    garage.tell(1, {0});
+    MapSlot wanted = Garage::slotAt(1, 0);
+    const double x = garage.told.back().corners[1].x() + 0.6;
+    wanted.id = 50;
+    wanted.corners = {Vector2d(x + kDepth, 0.0), Vector2d(x + kDepth, kWidth), Vector2d(x, kWidth),
+                      Vector2d(x, 0.0)};
+    MapSlot seen = wanted;
+    seen.shape = SlotShape::kParallel;
+    seen.corners = {wanted.corners[3], wanted.corners[0], Vector2d(x + kDepth, 2.1),
+                    Vector2d(x, 2.1)};
+    garage.told.push_back(seen);
+    for (const int k : {1, 2}) {
+      MapSlot other = seen;
+      other.id = 50 + k;
+      for (Vector2d& corner : other.corners) corner -= Vector2d(0.0, 10.0 * k);
+      if (!is_like_others) other.corners[1].x() += 1.2;
+      if (!is_like_others) other.corners[2].x() += 1.2;
+      garage.told.push_back(other);
+    }
+    garage.objects.clear();
+    garage.paintTold();
+    const RowCompletion rows = garage.complete();
+    const auto turned = std::find_if(rows.added.begin(), rows.added.end(),
+                                     [](const MapSlot& slot) { return slot.id == 50; });
+    ASSERT_EQ(turned == rows.added.end(), is_like_others);
+    if (is_like_others) continue;
+    expectAt(*turned, wanted);
+    EXPECT_EQ(turned->shape, SlotShape::kPerpendicular);
+  }
+}
+
 TEST(RowCompletion, SplitsTwoSlotsReadAsOne) {
   enum class Case { kTwo, kShortSides, kLonger, kWall, kRear, kNoneKnown };
   for (const Case which :
