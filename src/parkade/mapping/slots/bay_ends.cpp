@@ -164,7 +164,7 @@ class BayEndFinder {
                                  const Vector2d& rear) const {
     constexpr double kLeast = 0.6;  // m of paint
     constexpr double kBehind = 1.3;
-    constexpr double kSeen = 0.7;
+    constexpr double kSeen = 0.7;  // m of what lies behind
     const Vector2d inward = (rear - front).normalized();
     const SlotEvidence::Line behind =
         lookAlong(grid_, rear + 2.0 * kPast * inward, rear + kBehind * inward);

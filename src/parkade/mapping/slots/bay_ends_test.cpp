@@ -46,10 +46,7 @@ class TwoRows : public Garage {
                     Vector2d(x + kWidth, kFront - kDepth)};
     return slot;
   }
-  void paintSide(double from, double to) {
-    fill(GridLayer::kParkingLines, SemanticClass::kSlotLine, {kMargin - 0.05, from},
-         {kMargin + 0.05, to});
-  }
+  void paintSide(double from, double to) { paintUpright({kMargin, from}, {kMargin, to}); }
   void paintEntrance() {
     fill(GridLayer::kParkingLines, SemanticClass::kSlotLine, {kMargin, kFront - 0.05},
          {kMargin + 0.6 * kWidth, kFront + 0.05});
@@ -176,9 +173,7 @@ class SlotsAlongTheAisle : public Garage {
     const Vector2d in = (slot.corners[3] - slot.corners[0]).normalized();
     for (const auto& [front, length] :
          {std::pair{slot.corners[0], left}, {slot.corners[1], right}}) {
-      const Vector2d rear = front + length * in;
-      fill(GridLayer::kParkingLines, SemanticClass::kSlotLine,
-           front.cwiseMin(rear) - Vector2d(0.05, 0.0), front.cwiseMax(rear) + Vector2d(0.05, 0.0));
+      paintUpright(front, front + length * in);
     }
   }
 };

@@ -37,19 +37,18 @@ bool isBlocked(const MapSlot& slot, const std::vector<MapSlot>& told) {
   });
 }
 
+double frontOf(const MapSlot& slot) {
+  return (slot.corners[1] - slot.corners[0]).norm();
+}
+
 // As long as slots along the aisle are.
 bool mayLieAlong(const MapSlot& slot) {
   constexpr double kLeast = 5.0;  // m
   constexpr double kMost = 7.4;
   constexpr double kWidest = 2.8;
   const double length = (slot.corners[3] - slot.corners[0]).norm();
-  const double width = (slot.corners[1] - slot.corners[0]).norm();
   return slot.shape == SlotShape::kPerpendicular && length > kLeast && length < kMost &&
-         width < kWidest;
-}
-
-double frontOf(const MapSlot& slot) {
-  return (slot.corners[1] - slot.corners[0]).norm();
+         frontOf(slot) < kWidest;
 }
 
 // Of slots into rows, most of them.
@@ -82,18 +81,14 @@ bool mayBeSideways(std::size_t i, const std::vector<MapSlot>& told, const Layere
   return others >= kOthers && gatherEvidence(grid, told[i].corners).rear.seen_m < kUnseen;
 }
 
-// The same ground, the front a side, entered by its right end or its left one.
-MapSlot enteredByEnd(const MapSlot& slot, bool right, double width) {
+// So wide, the front a side, entered by its right end.
+MapSlot enteredFromRight(const MapSlot& slot, double width) {
   const Vector2d& a = slot.corners[0];
   const Vector2d& b = slot.corners[1];
   const Vector2d across = width * inwardOf(slot);
   MapSlot turned = slot;
   turned.shape = SlotShape::kPerpendicular;
-  if (right) {
-    turned.corners = {b, b + across, a + across, a};
-  } else {
-    turned.corners = {a + across, a, b, b + across};
-  }
+  turned.corners = {b, b + across, a + across, a};
   return turned;
 }
 
@@ -113,8 +108,9 @@ std::vector<std::size_t> turnSidewaysSlots(std::vector<MapSlot>& told, const Lay
   if (!width) return turned;
   for (std::size_t i = 0; i < told.size(); ++i) {
     if (!mayBeSideways(i, told, grid)) continue;
-    const MapSlot by_right = enteredByEnd(told[i], true, *width);
-    const MapSlot by_left = enteredByEnd(told[i], false, *width);
+    const MapSlot by_right = enteredFromRight(told[i], *width);
+    MapSlot by_left = by_right;
+    std::rotate(by_left.corners.begin(), by_left.corners.begin() + 2, by_left.corners.end());
     const bool is_right_blocked = isBlocked(by_right, told);
     if (is_right_blocked == isBlocked(by_left, told)) continue;
     const MapSlot& slot = is_right_blocked ? by_left : by_right;

@@ -191,8 +191,8 @@ TEST(RowCompletion, TurnsASlotThatIsSeenFromItsSide) {
       MapSlot other = seen;
       other.id = 50 + k;
       for (Vector2d& corner : other.corners) corner -= Vector2d(0.0, 10.0 * k);
-      if (!is_like_others) other.corners[1].x() += 1.2;
-      if (!is_like_others) other.corners[2].x() += 1.2;
+      for (const std::size_t right : {1U, 2U})
+        if (!is_like_others) other.corners[right].x() += 1.2;
       garage.told.push_back(other);
     }
     garage.objects.clear();

@@ -35,8 +35,9 @@ struct SlotEvidence {
   double vehicle = 0.0;
   double vehicle_amid = 0.0;  ///< of the middle half alone: any car in the slot covers that
   double seen = 0.0;          ///< of the inside
-  double number_m2 = 0.0;     ///< painted number inside, not a share
-  double stop_m2 = 0.0;       ///< wheel stop inside, not a share
+  static constexpr double kLeastSeen = 0.15;  ///< of the inside, to tell what is in it
+  double number_m2 = 0.0;                     ///< painted number inside, not a share
+  double stop_m2 = 0.0;                       ///< wheel stop inside, not a share
   double number_aside = 0.0;  ///< how far from the middle between the sides, of the width
 };
 

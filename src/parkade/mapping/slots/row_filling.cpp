@@ -235,7 +235,6 @@ class GapFiller {
 
   [[nodiscard]] Filling weigh(const Gap& gap, const std::vector<Place>& places,
                               bool are_wide) const {
-    constexpr double kLeastSeen = 0.15;  // of a slot
     const Ends ends = endsOf(gap);
     Filling filling;
     SlotEvidence::Line entrance;
@@ -247,7 +246,7 @@ class GapFiller {
       const SlotEvidence& e = places[i].evidence;
       if (isDenied(e) || (!ends.enclose() && likelihood_.lacksSide(e))) return {};
       // Several wide ones fill any gap: where nobody looked a pillar may stand between usual ones.
-      if (are_wide && e.seen < kLeastSeen) return {};
+      if (are_wide && e.seen < SlotEvidence::kLeastSeen) return {};
       is_bare = is_bare || likelihood_.lacksAllLines(e);
       shows_lines = shows_lines || showsLines(e);
       // Lines that known slots have as well say nothing new.

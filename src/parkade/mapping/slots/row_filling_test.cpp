@@ -104,11 +104,8 @@ TEST(RowFilling, BelievesABayBetweenTwoOthersSooner) {
     garage.paintTold();
     MapSlot first = Garage::slotAt(1, 0);
     garage.park(first);
-    for (double y = 0.5; y < 3.0; y += 0.05) {
-      garage.fill(GridLayer::kParkingLines, SemanticClass::kSlotLine,
-                  first.corners[1] + Vector2d(-0.05, y),
-                  first.corners[1] + Vector2d(0.05, y + 0.05));
-    }
+    garage.paintUpright(first.corners[1] + Vector2d(0.0, 0.5),
+                        first.corners[1] + Vector2d(0.0, 3.0));
     EXPECT_EQ(garage.complete().added.size(), between ? 3U : 0U);
   }
 }
@@ -123,8 +120,7 @@ TEST(RowFilling, AnEntranceOfTheNextRowIsNoSide) {
     garage.park(Garage::slotAt(1, 1));
     const Vector2d from = Garage::slotAt(1, 2).corners[1] + Vector2d(0.0, 0.5);
     const Vector2d to = from + Vector2d(0.0, 3.6);
-    garage.fill(GridLayer::kParkingLines, SemanticClass::kSlotLine, from - Vector2d(0.05, 0.0),
-                to + Vector2d(0.05, 0.0));
+    garage.paintUpright(from, to);
     if (has_next) {
       MapSlot next = Garage::slotAt(3, 0);
       const Vector2d depth(2.3, 0.0);
@@ -159,10 +155,7 @@ TEST(RowFilling, UsualSlotsAreMoreLikelyThanWideOnes) {
   garage.paintTold();
   const double left = kBay + kMargin;
   const double right = 2.0 * kBay - kMargin;
-  for (const double x : {left, right}) {
-    garage.fill(GridLayer::kParkingLines, SemanticClass::kSlotLine, {x - 0.05, 0.0},
-                {x + 0.05, kDepth});
-  }
+  for (const double x : {left, right}) garage.paintUpright({x, 0.0}, {x, kDepth});
   for (int place = 0; place < 3; ++place) garage.park(Garage::slotAt(1, place));
   const RowCompletion rows = garage.complete();
   ASSERT_EQ(rows.added.size(), 3U);

@@ -62,6 +62,12 @@ class Garage {
       }
     }
   }
+  // A line of 0.1 m along y.
+  void paintUpright(const Vector2d& from, const Vector2d& to) {
+    const Vector2d half_width(0.05, 0.0);
+    fill(GridLayer::kParkingLines, SemanticClass::kSlotLine, from.cwiseMin(to) - half_width,
+         from.cwiseMax(to) + half_width);
+  }
   void park(const MapSlot& slot) {
     const Vector2d inset(0.3, 0.4);
     fill(GridLayer::kAvailability, SemanticClass::kVehicle,

@@ -29,9 +29,7 @@ MapSlot tellOneRarelySeen(Garage& garage) {
 
 // One side alone: 0 is left of the entrance, 1 right.
 void paintSide(Garage& garage, const MapSlot& slot, std::size_t side) {
-  const Vector2d half_width(0.05, 0.0);
-  garage.fill(GridLayer::kParkingLines, SemanticClass::kSlotLine, slot.corners[side] - half_width,
-              slot.corners[3 - side] + half_width);
+  garage.paintUpright(slot.corners[side], slot.corners[3 - side]);
 }
 
 // Pictures may take a lane's edge for a slot's side, and nothing for the other one; where two of

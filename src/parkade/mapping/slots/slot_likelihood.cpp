@@ -104,11 +104,10 @@ double SlotLikelihood::entrance(const SlotEvidence::Line& line) const {
 }
 
 double SlotLikelihood::vehicle(const SlotEvidence& evidence) {
-  constexpr double kSeen = 0.15;    // of a slot
   constexpr double kParked = 0.35;  // covered, of what is seen
   constexpr double kOften = 0.5;    // of slots hold a vehicle
   constexpr double kSeldom = 0.05;  // of other places
-  if (evidence.seen < kSeen) return 0.0;
+  if (evidence.seen < SlotEvidence::kLeastSeen) return 0.0;
   return evidence.vehicle > kParked ? std::log(kOften / kSeldom)
                                     : std::log((1.0 - kOften) / (1.0 - kSeldom));
 }
@@ -174,9 +173,9 @@ bool isDenied(const SlotEvidence& evidence) {
 }
 
 void setFree(const SlotEvidence& evidence, MapSlot& slot) {
-  constexpr double kSeen = 0.15;  // of the slot
   constexpr double kVehicle = 0.25;
-  if (evidence.seen > kSeen) slot.probability_free = evidence.vehicle_amid > kVehicle ? 0.1 : 0.9;
+  if (evidence.seen > SlotEvidence::kLeastSeen)
+    slot.probability_free = evidence.vehicle_amid > kVehicle ? 0.1 : 0.9;
 }
 
 }  // namespace parkade::slot_rows
