@@ -8,6 +8,7 @@
 
 #include "parkade/camera/rig.hpp"
 #include "parkade/cli/bench_key.hpp"
+#include "parkade/cli/camera_errors.hpp"
 #include "parkade/cli/child_process.hpp"
 #include "parkade/cli/eval_map.hpp"
 #include "parkade/cli/map_truth_file.hpp"
@@ -75,6 +76,9 @@ Result<Json> judgeTrajectory(const std::string& trajectory, const std::string& s
   const Status told = judgeCovariances(fs::path(trajectory).parent_path().string(), estimate->poses,
                                        truth->poses, {}, *anchored);
   if (!told) return told.error();
+  const Status found =
+      judgeCameras(fs::path(trajectory).parent_path().string(), sequence, *anchored);
+  if (!found) return found.error();
   options.align = "se3";
   const Result<Evaluation> aligned = evaluate(estimate->poses, truth->poses, options);
   if (!aligned) return aligned.error();

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "parkade/cli/camera_errors.hpp"
 #include "parkade/cli/command.hpp"
 #include "parkade/cli/option_checks.hpp"
 #ifdef PARKADE_WITH_EVAL_MAP
@@ -163,6 +164,9 @@ Status evaluateFiles(const EvalArguments& arguments) {
     auto status = judgeCovariances(arguments.trajectory, estimate->poses, reference->poses,
                                    options.association, *evaluation);
     if (!status) return status;
+  }
+  if (auto status = judgeCameras(arguments.trajectory, arguments.reference, *evaluation); !status) {
+    return status;
   }
   EvaluationLabels labels{arguments.trajectory, arguments.reference, !estimate->has_stamps};
   if (labels.by_index && estimate->poses.size() != reference->poses.size()) {

@@ -6,6 +6,7 @@
 
 #include <utility>
 
+#include "parkade/cli/learned_rig.hpp"
 #include "parkade/core/split.hpp"
 #include "parkade/io/sequence_reader.hpp"
 #ifdef PARKADE_WITH_SIM
@@ -17,6 +18,11 @@ namespace {
 
 Result<OpenedSource> openFolder(const SourceRequest& request) {
   SequenceReaderOptions options;
+  if (!request.rig.empty()) {
+    const Result<std::string> file = rigFileOf(request.rig);
+    if (!file) return file.error();
+    options.rig = *file;
+  }
   options.cameras = request.cameras;
   options.gray = request.gray;
   options.gray_beside = request.gray_beside;
@@ -28,6 +34,7 @@ Result<OpenedSource> openFolder(const SourceRequest& request) {
   if (!reader) return reader.error();
   OpenedSource opened;
   opened.rig = (*reader)->rig();
+  opened.time_offsets_ns = (*reader)->timeOffsets();
   opened.source = std::move(*reader);
   return opened;
 }
@@ -37,6 +44,10 @@ Result<OpenedSource> openSimulator(const SourceRequest& request) {
   if (request.start_s > 0.0) {
     return Error{fmt::format("{}: a simulated drive is read from its beginning", request.spec)};
   }
+  if (!request.rig.empty()) {
+    return Error{fmt::format("{}: --rig is for sequence folders; a simulated drive tells its own",
+                             request.spec)};
+  }
   sim::SimSourceOptions options;
   options.cameras = request.cameras;
   options.gray = request.gray;
@@ -45,6 +56,7 @@ Result<OpenedSource> openSimulator(const SourceRequest& request) {
   if (!source) return source.error();
   OpenedSource opened;
   opened.rig = (*source)->rig();
+  opened.time_offsets_ns.assign(opened.rig.cameras.size(), 0);
   opened.source = std::move(source).value();
   return opened;
 #else

@@ -4,9 +4,11 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "parkade/camera/rig.hpp"
 #include "parkade/core/result.hpp"
+#include "parkade/core/time.hpp"
 #include "parkade/types/sensor_source.hpp"
 
 namespace parkade::cli {
@@ -14,6 +16,7 @@ namespace parkade::cli {
 /// What a command may ask of its input.
 struct SourceRequest {
   std::string spec;     ///< a sequence folder, or sim:GARAGE/ROUTE
+  std::string rig;      ///< file in place of the sequence's own, or folder of a run; empty: its own
   std::string cameras;  ///< cam0,cam1; empty: all
   double start_s = 0.0;
   double duration_s = 0.0;  ///< 0: to the end
@@ -25,7 +28,8 @@ struct SourceRequest {
 
 /// An input with its calibration.
 struct OpenedSource {
-  Rig rig;
+  Rig rig;                              ///< without time offsets: the source's stamps have them
+  std::vector<TimeNs> time_offsets_ns;  ///< what was added to each camera's recorded stamps
   std::unique_ptr<SensorSource> source;
 };
 

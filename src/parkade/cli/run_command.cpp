@@ -52,6 +52,7 @@ constexpr const char* kRunFooter =
     "  health.csv            one row per frame set: health and its reason, speed, biases\n"
     "  map.db, map/          the map and its exports, where the method makes one (not vis)\n"
     "  report.html           a page about the run; pictures/ holds what it shows\n"
+    "  rig.yaml              the rig with its cameras where the drive found them, for --rig\n"
     "  timing.json, metrics.json, config.yaml\n"
     "With --map all poses are in the map's frame, and trajectory.tum begins where the car is found "
     "in\n"
@@ -65,7 +66,7 @@ constexpr const char* kRunFooter =
     "  parkade run SEQ --out OUT\n"
     "  parkade run SEQ --out FRONT --cameras cam0 --set vio.window.keyframes=8 --final\n"
     "  parkade run SEQ --out FUSED --method fused\n"
-    "  parkade run LATER --out OUT2 --method fused --map FUSED\n"
+    "  parkade run LATER --out OUT2 --method fused --map FUSED --rig FUSED\n"
     "  parkade run SEQ --out SHORT --duration 5 --debug-images SHORT/tracks";
 
 // Throws what CLI11 throws where the command line is wrong.
@@ -134,11 +135,15 @@ Result<std::unique_ptr<MappingRun>> createRun(const RunArguments& arguments, con
   return run;
 }
 
-RunDescription describe(const RunArguments& arguments, const Rig& rig, PipelineOptions& options) {
+RunDescription describe(const RunArguments& arguments, const OpenedSource& opened,
+                        PipelineOptions& options) {
   RunDescription description;
   description.source = arguments.source.spec;
   description.cameras = arguments.source.cameras;
-  for (const RigCamera& camera : rig.cameras) description.camera_names.push_back(camera.name);
+  description.rig = opened.rig;
+  for (std::size_t c = 0; c < opened.time_offsets_ns.size(); ++c) {
+    description.rig.cameras[c].time_offset_ns = opened.time_offsets_ns[c];
+  }
   description.method = arguments.method;
   description.config = dumpOptions(asOptions(options));
   description.threads = arguments.threads;
@@ -151,6 +156,7 @@ Status writeResults(const RunArguments& arguments, const RunDescription& descrip
   const RunTexts texts = runTexts(description, run, health);
   Status status = clearRunFolder(out, configText(description));
   if (status) status = writeRunFiles(out, texts, run, health, arguments.with_final);
+  if (status) status = writeLearnedRig(out, description, run);
   if (status) status = writeMap(out, description.source, run);
   return status;
 }
@@ -200,7 +206,7 @@ Status runSequence(RunArguments arguments) {
     if (!images->status()) return images->status();
     (*run)->addObserver(&*images);
   }
-  const RunDescription description = describe(arguments, opened->rig, options);
+  const RunDescription description = describe(arguments, *opened, options);
   // After all that can go wrong before the run.
   Status begun = beginRunFolder(arguments.out, configText(description));
   if (!begun) return begun;
@@ -264,6 +270,11 @@ void addRunCommand(CLI::App& app, int& exit_code) {
       "Replace the results of an earlier run in OUT, or write into a folder that holds "
       "something else");
 
+  command
+      ->add_option("--rig", a->source.rig,
+                   "Rig file in place of SEQ's rig.yaml, or the folder of a run: the rig as that "
+                   "drive found it")
+      ->group("Input");
   command->add_option("--cameras", a->source.cameras, "Cameras to use, as cam0,cam1; default: all")
       ->check(checkCameraNames)
       ->group("Input");

@@ -5,11 +5,13 @@
 #include <fmt/core.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "parkade/cli/learned_rig.hpp"
 #include "parkade/cli/output_folder.hpp"
 #include "parkade/core/json_text.hpp"
 #include "parkade/io/file.hpp"
@@ -46,18 +48,6 @@ nlohmann::json timingJson(const RunSummary& summary) {
   return json;
 }
 
-nlohmann::json calibrationJson(const std::string& name, const CameraCalibrationEstimate& camera) {
-  const Eigen::Matrix4d T = camera.T_vehicle_cam.matrix();
-  nlohmann::json json{{"camera", name}, {"time_offset_s", camera.time_offset}};
-  for (int row = 0; row < 4; ++row) {
-    json["T_vehicle_cam"].push_back({T(row, 0), T(row, 1), T(row, 2), T(row, 3)});
-  }
-  json["position_sigma_m"] = {camera.sigma(0), camera.sigma(1), camera.sigma(2)};
-  json["rotation_sigma_rad"] = {camera.sigma(3), camera.sigma(4), camera.sigma(5)};
-  json["time_offset_sigma_s"] = camera.sigma(6);
-  return json;
-}
-
 nlohmann::json metricsJson(const RunDescription& description, const MappingRun& run,
                            const HealthLog& health) {
   const RunSummary& summary = run.summary();
@@ -77,8 +67,7 @@ nlohmann::json metricsJson(const RunDescription& description, const MappingRun& 
   }
   const std::vector<CameraCalibrationEstimate> calibration = run.calibration();
   for (std::size_t c = 0; c < calibration.size(); ++c) {
-    json["calibration"].push_back(calibrationJson(
-        c < description.camera_names.size() ? description.camera_names[c] : "", calibration[c]));
+    json["calibration"].push_back(calibrationJson(description.rig.cameras[c], calibration[c]));
   }
   const std::optional<double> start_up = health.startUpSeconds();
   json["start_up_s"] = start_up ? nlohmann::json(*start_up) : nlohmann::json();
@@ -177,6 +166,16 @@ Status writeRunFiles(const std::string& folder, const RunTexts& texts, const Map
     if (!status) return status;
   }
   return {};
+}
+
+Status writeLearnedRig(const std::string& folder, const RunDescription& description,
+                       const MappingRun& run) {
+  const std::vector<CameraCalibrationEstimate> learned = run.calibration();
+  const std::vector<RigCamera>& told = description.rig.cameras;
+  const bool has_files = std::all_of(
+      told.begin(), told.end(), [](const RigCamera& camera) { return camera.mask_pixels.empty(); });
+  if (learned.empty() || !has_files || run.summary().poses == 0) return {};
+  return writeRig(learnedRig(description.rig, learned), joinPath(folder, "rig.yaml"));
 }
 
 Status writeMap(const std::string& folder, const std::string& name, const MappingRun& run) {

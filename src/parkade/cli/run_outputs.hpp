@@ -51,7 +51,7 @@ class DebugImages : public PipelineObserver {
 struct RunDescription {
   std::string source;
   std::string cameras;
-  std::vector<std::string> camera_names;  ///< in the order of the run's rig
+  Rig rig;  ///< as told, with the time offsets of its file
   std::string method;
   std::string config;  ///< effective configuration, YAML
   int threads = 1;
@@ -70,6 +70,11 @@ RunTexts runTexts(const RunDescription& description, const MappingRun& run,
 /// Writes trajectory*.tum, covariance.csv and the texts, each whole or not at all.
 Status writeRunFiles(const std::string& folder, const RunTexts& texts, const MappingRun& run,
                      const HealthLog& health, bool with_final);
+
+/// Writes rig.yaml, the rig as learned, where the run refined its cameras and has a pose. Not that
+/// of a drive simulated on the fly, whose masks lie in no file.
+Status writeLearnedRig(const std::string& folder, const RunDescription& description,
+                       const MappingRun& run);
 
 /// Writes map.db and the exports map/, where the run made a map.
 Status writeMap(const std::string& folder, const std::string& name, const MappingRun& run);

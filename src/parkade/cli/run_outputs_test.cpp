@@ -15,6 +15,7 @@ TEST(RunOutputs, TextsHoldPathsThatAreNoUtf8) {
   const auto run = MappingRun::create(rig, PipelineOptions{}, 1, RunMethod::kVis);
   ASSERT_TRUE(run.ok()) << run.error().message;
   RunDescription description;
+  description.rig = rig;
   description.source = "drive\xFF";
   const RunTexts texts = runTexts(description, **run, HealthLog());
   ASSERT_EQ(texts.size(), 3u);

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -39,6 +40,34 @@ TextTable summaryTable(const Json& metrics, const Json& timing) {
   row("tracks per frame set", figureText(reportNumber(metrics, "/mean_tracks"), 0));
   row("real-time factor", figureText(reportNumber(timing, "/real_time_factor"), 2));
   row("peak memory", figureText(reportNumber(timing, "/peak_memory_mb"), 0) + " MB");
+  return table;
+}
+
+// Where the drive found the cameras, by where they were told to sit.
+TextTable cameraTable(const Json& calibration) {
+  constexpr double kDegrees = 180.0 / M_PI;
+  TextTable table;
+  table.title = "Where the cameras were found";
+  table.header = {"camera", "moved mm: x", "y", "z", "sigma", "turned deg: x", "y", "z", "sigma"};
+  for (const Json& camera : calibration) {
+    std::vector<std::string> row = {camera.value("camera", "-")};
+    const auto add = [&](const std::string& value, const std::string& sigma, double unit,
+                         int digits) {
+      double squares = 0.0;
+      for (const char* axis : {"/0", "/1", "/2"}) {
+        row.push_back(figureText(unit * reportNumber(camera, value + axis), digits));
+        squares += std::pow(unit * reportNumber(camera, sigma + axis), 2) / 3.0;
+      }
+      row.push_back(figureText(std::sqrt(squares), digits));
+    };
+    add("/moved_m", "/position_sigma_m", 1e3, 1);
+    add("/turned_rad", "/rotation_sigma_rad", kDegrees, 3);
+    table.rows.push_back(std::move(row));
+  }
+  table.note =
+      "Against the rig file, along and about the vehicle's axes; sigma: of one axis. rig.yaml "
+      "holds "
+      "the rig as found, for --rig.";
   return table;
 }
 
@@ -152,6 +181,7 @@ Status writeRunReport(const std::string& run_folder, const std::string& page_pat
   addLocalMapFigures(run, page);
   page.section("What the cameras see");
   addCameraFigures(run, page);
+  if (metrics.contains("calibration")) page.foldedTable(cameraTable(metrics["calibration"]));
 
   page.section("Health and time");
   page.beginFigures();

@@ -12,8 +12,8 @@
 #include <optional>
 #include <set>
 
+#include "parkade/eval/bench_honesty_tables.hpp"
 #include "parkade/eval/bench_map_tables.hpp"
-#include "parkade/eval/consistency.hpp"
 #include "parkade/eval/statistics.hpp"
 
 namespace parkade {
@@ -249,32 +249,6 @@ std::optional<TextTable> mapTable(const std::vector<BenchRecord>& records) {
   return table;
 }
 
-// Are the covariances honest? One NEES per run, its mean over time, the runs being independent.
-std::optional<TextTable> consistencyTable(const std::vector<BenchRecord>& records,
-                                          const std::vector<BenchMethod>& methods) {
-  TextTable table;
-  table.title = "Honesty of the covariances";
-  table.header = {"method", "runs", "NEES position", "95 % band", "NEES yaw", "95 % band"};
-  for (const BenchMethod& method : methods) {
-    const Records chosen = select(records, [&](const BenchRecord& r) {
-      return r.method == method.name && !r.failed && std::isfinite(r.figure("nees.position"));
-    });
-    const Result<NeesTest> position = neesTest(valuesOf(chosen, "nees.position"), 3);
-    const Result<NeesTest> yaw = neesTest(valuesOf(chosen, "nees.yaw"), 1);
-    if (!position || !yaw) continue;
-    table.rows.push_back(
-        {method.name, std::to_string(position->runs), figureText(position->mean, 2),
-         figureText(position->lower, 2) + " to " + figureText(position->upper, 2),
-         figureText(yaw->mean, 2), figureText(yaw->lower, 2) + " to " + figureText(yaw->upper, 2)});
-  }
-  if (table.rows.empty()) return std::nullopt;
-  table.note =
-      "Normalised estimation error squared, mean over each run and over the runs: above the band "
-      "the "
-      "covariance is too small, below it too large. Definitions: docs/evaluation.md, 6.";
-  return table;
-}
-
 // A row per method and condition (or for all random garages): what a reader wants of many drives.
 std::optional<TextTable> summaryTable(const std::string& title,
                                       const std::vector<BenchRecord>& records,
@@ -370,6 +344,7 @@ std::vector<TextTable> detailTables(const std::vector<BenchRecord>& records,
   }
   tables.push_back(accuracyTable(records));
   add(consistencyTable(records, present));
+  add(cameraTable(records));
   add(timingTable(records));
   add(mapTable(records));
   add(objectTable(records, present));

@@ -92,6 +92,33 @@ TEST(BenchTables, HonestyStandsBesideItsBand) {
                                                    "0.17 to 2.57")));
 }
 
+TEST(BenchTables, CamerasAreToldAndFoundByCondition) {
+  std::vector<BenchRecord> records = {record("test1", "fused", 0.01),
+                                      record("test2", "fused", 0.01),
+                                      record("test1", "fused", 0.02), record("test3", "vis", 0.02)};
+  const auto tell = [](BenchRecord& r, double told_deg, double found_m) {
+    r.figures["cameras.told_deg"] = told_deg;
+    r.figures["cameras.found_deg"] = 0.01;
+    r.figures["cameras.told_m"] = 0.01;
+    r.figures["cameras.found_m"] = found_m;
+    r.figures["cameras.nees_turn"] = 2.0;
+    r.figures["cameras.nees_place"] = 4.0;
+  };
+  tell(records[0], 0.03, 0.001);
+  tell(records[1], 0.04, 0.001);
+  tell(records[2], 0.1, 0.002);
+  records[2].condition = "off by 0.1 deg";
+  const std::vector<TextTable> tables = detailTables(records, kMethods);
+  const auto found = std::find_if(tables.begin(), tables.end(), [](const TextTable& t) {
+    return t.title == "Where the cameras sit";
+  });
+  ASSERT_NE(found, tables.end());
+  EXPECT_THAT(found->rows, ElementsAre(ElementsAre("as it is", "fused", "2", "0.035", "0.010",
+                                                   "10.0", "1.0", "2.00", "4.00"),
+                                       ElementsAre("off by 0.1 deg", "fused", "1", "0.100", "0.010",
+                                                   "10.0", "2.0", "2.00", "4.00")));
+}
+
 TEST(BenchTables, ObjectsAreSummedOverTheDrivesAsTheyAre) {
   std::vector<BenchRecord> records;
   for (int i = 1; i <= 3; ++i) {

@@ -28,6 +28,19 @@ struct EvaluationOptions {
   }
 };
 
+/// How wrong cameras were told to sit on the car, and how wrong a drive found them: root mean
+/// squares over cameras and axes; mean NEES of a camera's place and of its turn (3 each where what
+/// was told of it is honest).
+struct CameraErrors {
+  int cameras = 0;
+  double told_m = 0.0;
+  double told_deg = 0.0;
+  double found_m = 0.0;
+  double found_deg = 0.0;
+  double nees_place = 0.0;
+  double nees_turn = 0.0;
+};
+
 /// How well an estimated trajectory agrees with a reference. Definitions: docs/evaluation.md.
 struct Evaluation {
   EvaluationOptions options;
@@ -48,6 +61,7 @@ struct Evaluation {
   double estimate_path_length = 0;  ///< of the same poses of the estimate, aligned (and scaled), m
   double duration_s = 0.0;          ///< from the first pair to the last
   std::optional<PoseConsistency> consistency;  ///< set by the caller who has covariances
+  std::optional<CameraErrors> cameras;         ///< set by the caller who knows the rig's truth
 
   std::vector<std::string> notes;  ///< what a reader must know to trust the figures
 };

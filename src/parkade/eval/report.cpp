@@ -93,6 +93,12 @@ std::string evaluationJson(const Evaluation& e, const EvaluationLabels& labels) 
                     {"yaw", e.consistency->yaw},
                     {"poses", e.consistency->poses}};
   }
+  if (e.cameras) {
+    json["cameras"] = {{"count", e.cameras->cameras},       {"told_m", e.cameras->told_m},
+                       {"told_deg", e.cameras->told_deg},   {"found_m", e.cameras->found_m},
+                       {"found_deg", e.cameras->found_deg}, {"nees_place", e.cameras->nees_place},
+                       {"nees_turn", e.cameras->nees_turn}};
+  }
   return jsonText(json);
 }
 
@@ -132,6 +138,14 @@ std::string evaluationTable(const Evaluation& e, const EvaluationLabels& labels)
     text += fmt::format(
         "covariance mean NEES of position {:.2f} (3 if honest), of yaw {:.2f} (1), {} poses\n",
         e.consistency->position, e.consistency->yaw, e.consistency->poses);
+  }
+  if (e.cameras) {
+    text += fmt::format(
+        "cameras    told wrong by {:.3f} deg about and {:.1f} mm along each axis, found to {:.3f} "
+        "deg and {:.1f} mm (RMS);\n"
+        "           mean NEES of their turns {:.2f}, of their places {:.2f} (3 if honest)\n",
+        e.cameras->told_deg, 1e3 * e.cameras->told_m, e.cameras->found_deg,
+        1e3 * e.cameras->found_m, e.cameras->nees_turn, e.cameras->nees_place);
   }
   for (const auto& note : e.notes) text += fmt::format("note: {}\n", note);
   return text;

@@ -74,7 +74,7 @@ Status SequenceReader::load(const std::string& path, const SequenceReaderOptions
   if (!sequence) return sequence.error();
   if (Status status = checkFinished(*sequence); !status) return status;
 
-  Result<Rig> rig = readSequenceRig(*sequence);
+  Result<Rig> rig = options.rig.empty() ? readSequenceRig(*sequence) : readRig(options.rig);
   if (!rig) return rig.error();
   const std::vector<std::string> names = split(options.cameras, ',');
   if (!names.empty()) {
@@ -127,6 +127,7 @@ Status SequenceReader::loadImages(const std::string& sequence,
       stamps.push_back(row.t_ns + camera.time_offset_ns);
       paths.push_back(joinPath(data, row.file));
     }
+    time_offsets_ns_.push_back(camera.time_offset_ns);
     camera.time_offset_ns = 0;
     counts_.push_back({camera.name, 0, 0, 0});
   }

@@ -16,6 +16,7 @@
 namespace parkade {
 
 struct SequenceReaderOptions {
+  std::string rig;
   std::string cameras;
   bool gray = true;
   bool gray_beside = false;
@@ -28,6 +29,8 @@ struct SequenceReaderOptions {
   int decode_ahead = 4;
 
   void visit(OptionVisitor& v) {
+    v.field("rig", rig,
+            "Rig file (docs/formats.md) in place of the sequence's own; empty: its own.");
     v.field("cameras", cameras, "Cameras to read, as cam0,cam1; empty: all of the rig.");
     v.field("gray", gray, "Decode images as gray (true) or as BGR colour (false).");
     v.field("gray_beside", gray_beside, "Decode colour images as gray as well.");
@@ -72,6 +75,8 @@ class SequenceReader : public SensorSource {
   /// The cameras read, in the order of FrameSet::images. Time offsets are zero here, because the
   /// stamps have them already.
   [[nodiscard]] const Rig& rig() const { return rig_; }
+  /// What was added to each camera's recorded stamps, as its calibration says.
+  [[nodiscard]] const std::vector<TimeNs>& timeOffsets() const { return time_offsets_ns_; }
   [[nodiscard]] const std::vector<CameraReadCount>& counts() const { return counts_; }
 
  private:
@@ -89,6 +94,7 @@ class SequenceReader : public SensorSource {
 
   SensorSourceInfo info_;
   Rig rig_;
+  std::vector<TimeNs> time_offsets_ns_;
   std::vector<CameraReadCount> counts_;
   std::vector<ImuSample> imu_;
   std::vector<WheelSample> wheel_;

@@ -301,6 +301,24 @@ TEST_F(SequenceReaderTest, BadCalibrationsAreRefused) {
               AllOf(HasSubstr("rig.yaml:"), HasSubstr("not a rotation")));
 }
 
+TEST_F(SequenceReaderTest, AnotherRigTakesThePlaceOfItsOwn) {
+  Rig other = test::smallRig();
+  other.cameras[1].T_vehicle_cam = SE3(SO3(), {1.0, 2.0, 3.0});
+  other.cameras[1].time_offset_ns = 5 * kNsPerMs;
+  SequenceReaderOptions options;
+  options.rig = folder_.path("other.yaml");
+  EXPECT_THAT(openError(options), HasSubstr("other.yaml"));  // none there yet
+  ASSERT_TRUE(writeRig(other, options.rig).ok());
+  const auto reader = SequenceReader::open(seq(), options);
+  ASSERT_TRUE(reader.ok()) << reader.error().message;
+  EXPECT_EQ((*reader)->rig().cameras[1].T_vehicle_cam.translation(), Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ((*reader)->timeOffsets(), (std::vector<TimeNs>{0, 5 * kNsPerMs}));
+  EXPECT_EQ((*reader)->rig().cameras[1].time_offset_ns, 0);  // the stamps have it
+
+  ASSERT_TRUE(writeRig(test::smallRig(3), options.rig).ok());
+  EXPECT_THAT(openError(options), HasSubstr("the calibration names camera 'cam2'"));
+}
+
 TEST(SequenceReaderOnEuroc, ReadsEveryFrameSetTheSameOnAnyThreads) {
   PARKADE_NEED_DATA(data);
   std::vector<double> sums;
