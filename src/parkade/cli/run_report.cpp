@@ -181,7 +181,7 @@ Status writeRunReport(const std::string& run_folder, const std::string& page_pat
   addLocalMapFigures(run, page);
   page.section("What the cameras see");
   addCameraFigures(run, page);
-  if (metrics.contains("calibration")) page.foldedTable(cameraTable(metrics["calibration"]));
+  if (metrics.contains("calibration")) page.table(cameraTable(metrics["calibration"]));
 
   page.section("Health and time");
   page.beginFigures();
