@@ -165,6 +165,13 @@ TEST(SlotDoubts, WhatAParkedCarIsReadAsDeniesNoSlotBetweenPlainSides) {
   garage.fill(GridLayer::kParkingLines, SemanticClass::kUnknown,
               between.corners[0] + Vector2d(-0.2, 1.4), between.corners[2] + Vector2d(0.2, 0.2));
   EXPECT_EQ(garage.complete().added.size(), 1U);
+  // And all of one of them: then it must fill the place.
+  garage.fill(GridLayer::kParkingLines, SemanticClass::kUnknown,
+              between.corners[0] + Vector2d(-0.2, 0.2), between.corners[3] + Vector2d(0.2, 0.2));
+  EXPECT_EQ(garage.complete().added.size(), 1U);
+  garage.fill(GridLayer::kAvailability, SemanticClass::kFloor,
+              between.corners[0] + Vector2d(0.2, 0.2), between.corners[1] + Vector2d(-0.2, 2.2));
+  EXPECT_TRUE(garage.complete().added.empty());
 }
 
 }  // namespace

@@ -48,11 +48,14 @@ bool isPainted(const SlotEvidence::Line& line) {
   return line.contrast() > kContrast && line.paint() > kPaint;
 }
 
-// A vehicle between two painted sides. What the layers hold there beside it is painted on it or
-// reads so: its smear lies on the ground from where the cameras look.
+// A vehicle between two painted sides, or beside one where it, or its neighbour, hides the other.
+// What the layers hold there beside it is painted on it or reads so: its smear lies on the ground
+// from where the cameras look.
 bool holdsVehicle(const SlotEvidence& evidence) {
   constexpr double kVehicle = 0.6;  // of its middle
-  return isPainted(evidence.left) && isPainted(evidence.right) && evidence.vehicle_amid > kVehicle;
+  constexpr double kAll = 0.9;
+  const int painted = (isPainted(evidence.left) ? 1 : 0) + (isPainted(evidence.right) ? 1 : 0);
+  return evidence.vehicle_amid > (painted == 2 ? kVehicle : kAll) && painted > 0;
 }
 
 // An entrance between lane lines passes for one of them now and then. Numbers and wheel stops are
