@@ -80,6 +80,27 @@ TEST(SlotRegistry, ManyLooksKnowCornersNoBetterThanWhatTheyShare) {
   EXPECT_LT(slots[0].corner_sigma, 1.1 * floor);
 }
 
+// A line at the entrance that is worn away beyond a place passes for a corner there, though not a
+// sharp one, from farther off and so in more looks.
+TEST(SlotRegistry, OfTwoReadingsOfAPlaceTheSharperOneIsTold) {
+  MapSlot narrow = slotAhead();
+  narrow.corners[1].x() -= 1.0;
+  narrow.corners[2].x() -= 1.0;
+  const auto widthTold = [&](double sigma_of_narrow) {
+    SlotRegistry registry({});
+    for (int k = 0; k < 23; ++k) {
+      SlotObservation o = observed(k < 15 ? narrow : slotAhead());
+      const double sigma = k < 15 ? sigma_of_narrow : 0.02;
+      o.entrance_covariance.bottomRightCorner<2, 2>() = sigma * sigma * Eigen::Matrix2d::Identity();
+      registry.update({o}, k * kTick, SE2(), 0);
+    }
+    const std::vector<MapSlot> slots = registry.slots(23 * kTick);
+    return slots.size() == 1U ? (slots[0].corners[1] - slots[0].corners[0]).norm() : 0.0;
+  };
+  EXPECT_NEAR(widthTold(0.08), 2.5, 0.05);
+  EXPECT_NEAR(widthTold(0.02), 1.5, 0.05);
+}
+
 TEST(SlotRegistry, SlotsToldByTheirRowFadeAsOthersDo) {
   Garage garage;
   garage.tell(0, {0, 2});

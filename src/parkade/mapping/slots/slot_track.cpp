@@ -39,6 +39,14 @@ Seen toWorld(const SlotObservation& o, const SE2& T, double floor) {
   return seen;
 }
 
+double sharpness(const Matrix4& covariance) {
+  constexpr double kSharp = 0.03;  // m
+  constexpr double kBlurred = 0.05;
+  const double variance = std::max(0.5 * covariance.topLeftCorner<2, 2>().trace(),
+                                   0.5 * covariance.bottomRightCorner<2, 2>().trace());
+  return (kBlurred * kBlurred + kSharp * kSharp) / (kBlurred * kBlurred + variance);
+}
+
 std::vector<std::optional<std::size_t>> matchTracks(const std::vector<Track>& tracks,
                                                     const std::vector<Seen>& all, double sigma,
                                                     double gate) {
@@ -105,7 +113,7 @@ Track merged(Track first, Track second) {
   first.last_seen_ns = std::max(first.last_seen_ns, second.last_seen_ns);
   first.observations += second.observations;
   first.misses += second.misses;
-  first.confidence += second.confidence;
+  first.support += second.support;
   for (std::size_t k = 0; k < first.shapes.size(); ++k) first.shapes[k] += second.shapes[k];
   return first;
 }
