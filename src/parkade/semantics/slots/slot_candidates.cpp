@@ -64,10 +64,16 @@ class MarkPairing {
     if (!fitsRow(left, length) || !fitsRow(right, length)) return std::nullopt;
     const double cosine = std::abs(front.dot(c.inward)) / length;
     if (cosine > kMostSlant) return std::nullopt;
-    for (const SlotMark* mark : {&left, &right}) {
-      if (mark->across.isZero()) continue;
-      const double allowed = allowedAngle(kAlongFront, mark->across_length);
-      if (std::abs(cross(mark->across, front)) > std::sin(allowed) * length) return std::nullopt;
+    if (crossesFront(left, front) || crossesFront(right, front)) {
+      // A short piece of line, or what passes for one, knows its direction less well than two
+      // sides.
+      constexpr double kShort = 0.6;  // m
+      constexpr double kPlain = 0.8;  // m of each side
+      const auto isShort = [&](const SlotMark& mark) {
+        return !crossesFront(mark, front) || mark.across_length < kShort;
+      };
+      if (!isShort(left) || !isShort(right)) return std::nullopt;
+      if (std::min(left.visible, right.visible) < kPlain || cosine > kSquare) return std::nullopt;
     }
     c.shape = cosine > kSquare ? SlotShape::kSlanted : SlotShape::kPerpendicular;
     if (width < options_.min_width_m || width > options_.max_width_m) {
@@ -94,6 +100,13 @@ class MarkPairing {
     };
     const double shorter = std::min(seen(left), seen(right));
     return left.inward.dot(right.inward) > std::cos(allowedAngle(kSideBySide, shorter));
+  }
+
+  // Whether a line that meets the side runs elsewhere than along the entrance.
+  [[nodiscard]] static bool crossesFront(const SlotMark& mark, const Vector2d& front) {
+    if (mark.across.isZero()) return false;
+    const double allowed = allowedAngle(kAlongFront, mark.across_length);
+    return std::abs(cross(mark.across, front)) > std::sin(allowed) * front.norm();
   }
 
   // Faint lines make slots as wide as the others of their row.

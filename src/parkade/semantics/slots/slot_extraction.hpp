@@ -14,7 +14,7 @@ namespace parkade {
 
 struct SlotOptions {
   double min_width_m = 2.1;
-  double max_width_m = 3.9;
+  double max_width_m = 4.1;
   double min_depth_m = 4.5;
   double max_depth_m = 7.0;
   double min_parallel_length_m = 5.2;

@@ -60,8 +60,9 @@ class SlotRanking {
 
   // Beside a pillar the gap between two slots is easily taken into one of them: the line between is
   // hidden or worn. Where others are narrower, a wide one is doubtful, less so if the place of that
-  // line is seen to be bare, and not if its front is painted from corner to corner and no further,
-  // or up to a neighbour's at one of them: nothing was taken into it then. What borders on a
+  // line is seen to be bare, and not if its front is painted all along then, nor if that is painted
+  // from corner to corner and no further, or up to a neighbour's at one of them: nothing was taken
+  // into it then. What borders on a
   // likelier perpendicular slot is hardly a parallel one, and the entrances of slots that share a
   // line lie in one line.
   [[nodiscard]] double doubtBy(const SlotCandidate& c, const SlotCandidate& other) const {
@@ -77,7 +78,10 @@ class SlotRanking {
     if (share && other.score > c.score && !inLine(c, other)) doubt += 2.0;
     const double narrower = other.width();
     if (c.shape != SlotShape::kParallel && c.width() - narrower > kWider && !frontEnds(c)) {
-      doubt += isBareAt(c, narrower) ? kBare : 2.0;
+      if (!isBareAt(c, narrower))
+        doubt += 2.0;
+      else if (!isFrontPainted(c))
+        doubt += kBare;
     }
     return doubt;
   }
@@ -121,6 +125,14 @@ class SlotRanking {
     return (ends_left || neighbour([&](const auto& other) { return other.right == c.left; })) &&
            (ends_right || neighbour([&](const auto& other) { return other.left == c.right; })) &&
            (ends_left || ends_right);
+  }
+
+  // From corner to corner: across the gap beside a pillar no front goes on.
+  [[nodiscard]] bool isFrontPainted(const SlotCandidate& c) const {
+    constexpr double kPainted = 0.9;
+    constexpr double kInside = 0.15;  // m from a corner
+    const Vector2d u = c.front().normalized();
+    return probe_.along(c.left->p + kInside * u, c.right->p - kInside * u).paint > kPainted;
   }
 
   // Whether both places of a side line that would leave a slot of this width hold nothing but

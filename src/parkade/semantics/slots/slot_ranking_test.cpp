@@ -37,11 +37,42 @@ TEST(SlotRanking, TakesNoGapIntoASlot) {
 
 TEST(SlotRanking, WideSlotsMayStandAlone) {
   Row row;
-  row.width = 3.4;
+  row.marking = SlotMarking::kOpen;
+  for (const double width : {3.4, 3.95}) {  // the widest that standards know, and an error
+    row.width = width;
+    PaintedFloor floor;
+    row.paint(floor);
+    expectRow(row, slotsOf(floor), SlotShape::kPerpendicular, 0.02);
+  }
+}
+
+// Fronts do not go on across the gap beside a pillar.
+TEST(SlotRanking, AWideSlotBetweenOthersIsOneWhereItsFrontIsPainted) {
+  Row narrow;
+  narrow.x0 = 7.5;
+  narrow.width = 2.4;
+  Row wide = narrow;
+  wide.x0 = narrow.front(narrow.count).x();
+  wide.width = 3.5;
+  wide.count = 1;
+  Row next = narrow;
+  next.x0 = wide.front(1).x();
+  PaintedFloor floor;
+  for (const Row& row : {narrow, wide, next}) row.paint(floor);
+  const SlotObservation* slot = slotAt(slotsOf(floor), wide.front(0));
+  ASSERT_NE(slot, nullptr);
+  EXPECT_NEAR((slot->corners[1] - slot->corners[0]).norm(), wide.width, 0.05);
+}
+
+// What glare and wear leave of a front, or a scratch, runs anywhere.
+TEST(SlotRanking, AShortPieceOfLineAtACornerDoesNotDenyASlot) {
+  Row row;
+  row.count = 1;
   row.marking = SlotMarking::kOpen;
   PaintedFloor floor;
   row.paint(floor);
-  expectRow(row, slotsOf(floor), SlotShape::kPerpendicular, 0.02);
+  floor.line(row.front(0), row.front(0) + Vector2d(-0.25, 0.25), kLine);
+  EXPECT_NE(slotAt(slotsOf(floor), row.front(0)), nullptr);
 }
 
 // A car hides where narrower slots, as those beside, would have a line.
