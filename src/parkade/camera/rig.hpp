@@ -19,9 +19,11 @@ struct RigCamera {
   std::string name;  ///< folder name in a sequence: cam0, cam1, ...
   Camera camera;
   SE3 T_vehicle_cam;
-  TimeNs time_offset_ns = 0;  ///< added to a recorded stamp gives the time on the IMU's clock
-  double rate_hz = 0.0;       ///< 0 where unknown
-  std::string mask_path;      ///< 8-bit picture, 0 where the own body hides the world; or empty
+  double position_sigma = 0.0;  ///< m, of T_vehicle_cam's place along each axis; 0: not told
+  double rotation_sigma = 0.0;  ///< rad, of its turn about each axis; 0: not told
+  TimeNs time_offset_ns = 0;    ///< added to a recorded stamp gives the time on the IMU's clock
+  double rate_hz = 0.0;         ///< 0 where unknown
+  std::string mask_path;        ///< 8-bit picture, 0 where the own body hides the world; or empty
   std::vector<std::uint8_t> mask_pixels;  ///< the same row by row where there is no file; or empty
 };
 

@@ -11,6 +11,7 @@
 
 #include "parkade/camera/calibration_yaml.hpp"
 #include "parkade/camera/rig.hpp"
+#include "parkade/core/units.hpp"
 
 namespace parkade {
 namespace {
@@ -32,8 +33,8 @@ std::string relative(const std::string& path, const std::string& file) {
 
 RigCamera readRigCamera(const YamlNode& node) {
   node.allowOnly({"name", "camera_model", "intrinsics", "distortion_model", "distortion_coeffs",
-                  "cam2world_coeffs", "resolution", "T_vehicle_cam", "time_offset", "rate",
-                  "mask"});
+                  "cam2world_coeffs", "resolution", "T_vehicle_cam", "position_sigma",
+                  "rotation_sigma_deg", "time_offset", "rate", "mask"});
   RigCamera camera;
   camera.name = node.at("name").asString();
   if (camera.name.empty() || camera.name.find('/') != std::string::npos) {
@@ -41,6 +42,10 @@ RigCamera readRigCamera(const YamlNode& node) {
   }
   camera.camera = readCamera(node, "distortion_coeffs");
   camera.T_vehicle_cam = readTransform(node.at("T_vehicle_cam"));
+  if (node.has("position_sigma")) camera.position_sigma = readPositive(node.at("position_sigma"));
+  if (node.has("rotation_sigma_deg")) {
+    camera.rotation_sigma = readPositive(node.at("rotation_sigma_deg")) * kDegree;
+  }
   if (node.has("time_offset")) {
     const double seconds = node.at("time_offset").asDouble();
     constexpr double kMaxSeconds = 1e6;
@@ -125,6 +130,12 @@ std::string writeRigNode(const Rig& rig, const std::string& path) {
     text += fmt::format("  - name: {}\n", quoted(camera.name));
     text += writeCamera(camera.camera, indent);
     text += writeTransform("T_vehicle_cam", camera.T_vehicle_cam, indent);
+    if (camera.position_sigma > 0.0) {
+      text += fmt::format("{}position_sigma: {}\n", indent, camera.position_sigma);
+    }
+    if (camera.rotation_sigma > 0.0) {
+      text += fmt::format("{}rotation_sigma_deg: {}\n", indent, camera.rotation_sigma / kDegree);
+    }
     if (camera.time_offset_ns != 0) {
       text += fmt::format("{}time_offset: {}\n", indent, seconds(camera.time_offset_ns));
     }

@@ -10,6 +10,7 @@
 #include "parkade/camera/rig.hpp"
 #include "parkade/camera/test_folder.hpp"
 #include "parkade/core/random.hpp"
+#include "parkade/core/units.hpp"
 
 namespace parkade {
 namespace {
@@ -137,6 +138,8 @@ TEST_F(RigYaml, WritesWhatItReadsBackExactly) {
     Rig rig = randomRig(random);
     rig.cameras[1].mask_path = path("masks/1.png");
     rig.cameras[2].mask_path = "/elsewhere/2.png";
+    rig.cameras[1].position_sigma = 0.0028;
+    rig.cameras[1].rotation_sigma = 0.012 * kDegree;
     ASSERT_TRUE(writeRig(rig, path("rig.yaml")).ok());
     const Result<Rig> back = readRig(path("rig.yaml"));
     ASSERT_TRUE(back.ok()) << back.error().message;
@@ -148,6 +151,8 @@ TEST_F(RigYaml, WritesWhatItReadsBackExactly) {
       const RigCamera& b = back->cameras[k];
       EXPECT_EQ(a.name, b.name);
       EXPECT_EQ(a.mask_path, b.mask_path);
+      EXPECT_EQ(a.position_sigma, b.position_sigma);
+      EXPECT_DOUBLE_EQ(a.rotation_sigma, b.rotation_sigma);
       EXPECT_EQ(a.time_offset_ns, b.time_offset_ns);
       EXPECT_EQ(a.rate_hz, b.rate_hz);
       EXPECT_EQ(a.T_vehicle_cam.translation(), b.T_vehicle_cam.translation());

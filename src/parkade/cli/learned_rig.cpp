@@ -43,6 +43,9 @@ Rig learnedRig(const Rig& told, const std::vector<CameraCalibrationEstimate>& le
   for (std::size_t c = 0; c < learned.size(); ++c) {
     RigCamera& camera = rig.cameras[c];
     camera.T_vehicle_cam = learned[c].T_vehicle_cam;
+    const auto& sigma = learned[c].sigma;
+    camera.position_sigma = sigma.head<3>().norm() / std::sqrt(3.0);
+    camera.rotation_sigma = sigma.segment<3>(3).norm() / std::sqrt(3.0);
     // To the microsecond: an offset that is not refined is held to a few nanoseconds.
     camera.time_offset_ns += 1000 * std::llround(1e6 * learned[c].time_offset);
     if (camera.mask_path.empty()) continue;

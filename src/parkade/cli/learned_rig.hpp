@@ -16,8 +16,8 @@ namespace parkade::cli {
 /// folder that holds none.
 Result<std::string> rigFileOf(const std::string& path);
 
-/// The rig with its cameras where a drive has found them, and their clocks as it has. told: with
-/// the time offsets of its file; learned: one a camera (checked).
+/// The rig with its cameras where a drive has found them, how sure it is, and their clocks. told:
+/// with the time offsets of its file; learned: one a camera (checked).
 Rig learnedRig(const Rig& told, const std::vector<CameraCalibrationEstimate>& learned);
 
 /// One entry of metrics.json's "calibration" (docs/formats.md): where the camera was told to sit

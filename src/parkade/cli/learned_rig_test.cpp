@@ -40,6 +40,8 @@ TEST(LearnedRig, PlacesAndClocksAreThoseFoundAndMasksHaveFullPaths) {
   EXPECT_NEAR(rig.cameras[0].T_vehicle_cam.translation().x() -
                   told.cameras[0].T_vehicle_cam.translation().x(),
               0.003, 1e-12);
+  EXPECT_NEAR(rig.cameras[0].position_sigma, 1e-3, 1e-12);
+  EXPECT_NEAR(rig.cameras[0].rotation_sigma, 1e-4, 1e-12);
   EXPECT_EQ(rig.cameras[0].time_offset_ns, 7 * kNsPerMs);
   EXPECT_EQ(rig.cameras[1].time_offset_ns, told.cameras[1].time_offset_ns);
   EXPECT_EQ(rig.cameras[0].mask_path, std::filesystem::current_path() / "front.png");

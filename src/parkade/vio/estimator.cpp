@@ -48,18 +48,24 @@ VioEstimator::Impl::Impl(const Rig& rig, const VioOptions& options)
   if (refine_extrinsics || calibration.refine_time_offset) {
     // What is not refined is held by a prior that nothing outweighs.
     const double rotation = calibration.rotation_sigma_deg * std::numbers::pi / 180.0;
-    for (const VioCamera& camera : window_.cameras) {
+    for (const RigCamera& camera : rig.cameras) {
       CameraRefinement refinement;
-      refinement.prior_T_imu_cam = camera.T_imu_cam;
+      refinement.prior_T_imu_cam = T_imu_vehicle * camera.T_vehicle_cam;
       refinement.sigma.setConstant(kHeldCalibration);
       if (refine_extrinsics) {
-        refinement.sigma.head<3>().setConstant(calibration.position_sigma);
-        refinement.sigma.segment<3>(3).setConstant(rotation);
+        // Those that the rig tells are held: a rig that a drive has found errs in what no picture
+        // shows, and would be taken for exact in that, too, for what its pictures show is right.
+        const bool told = camera.position_sigma > 0.0 && camera.rotation_sigma > 0.0;
+        refinement.sigma.head<3>().setConstant(told ? camera.position_sigma
+                                                    : calibration.position_sigma);
+        refinement.sigma.segment<3>(3).setConstant(told ? camera.rotation_sigma : rotation);
+        learns_sigmas_ = learns_sigmas_ && !told;
       }
       if (calibration.refine_time_offset) refinement.sigma(6) = calibration.time_sigma;
       window_.refinements.push_back(refinement);
     }
   }
+  learns_sigmas_ = learns_sigmas_ && calibration.learn_sigmas;
   is_car_ = rig.vehicle.has_value();
   if (rig.vehicle) wheel_track_ = rig.vehicle->track;
 }
@@ -134,7 +140,7 @@ void VioEstimator::Impl::optimise(const SolveOptions& options) {
     newest_covariance_ = summary.newest_covariance;
     global_covariance_ = summary.global_covariance;
     // The trials of a start would learn from each other.
-    if (options_.calibration.learn_sigmas && initialised_ && !held) {
+    if (learns_sigmas_ && initialised_ && !held) {
       learnCalibrationSpread(window_, global_covariance_);
     }
   }

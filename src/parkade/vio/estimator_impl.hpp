@@ -121,7 +121,8 @@ class VioEstimator::Impl {
   [[nodiscard]] SolveOptions startOptions() const;
 
   VioOptions options_;
-  bool is_car_ = false;  // the vehicle frame's origin is below a rear axle
+  bool learns_sigmas_ = true;  // of the calibration
+  bool is_car_ = false;        // the vehicle frame's origin is below a rear axle
   double wheel_track_ = 0.0;
   ImuNoise noise_;
   TimeNs gap_ns_ = 0;

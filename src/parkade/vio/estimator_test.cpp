@@ -122,6 +122,30 @@ TEST(VioEstimator, RefinesTheCalibrationWhileDriving) {
              on.rmse, before, after);
 }
 
+// As a drive's rig does: where its pictures find nothing wrong it is not exact in what they do not
+// show.
+TEST(VioEstimator, SigmasThatTheRigTellsAreNotLearned) {
+  TrackSimulatorOptions options;
+  options.length = 25.0;
+  const SimulatedDrive drive = simulateDrive(testing::surroundRig(), options);
+  Rig told = drive.rig;
+  for (RigCamera& camera : told.cameras) {
+    camera.position_sigma = 0.003;
+    camera.rotation_sigma = 3e-4;
+  }
+  VioEstimator learning(drive.rig, {});
+  VioEstimator holding(told, {});
+  EXPECT_DOUBLE_EQ(holding.calibration()[0].sigma(0), 0.003);
+  EXPECT_DOUBLE_EQ(holding.calibration()[0].sigma(5), 3e-4);
+  runDrive(drive, learning);
+  runDrive(drive, holding);
+  EXPECT_GT(holding.rigSigma().length, 2.0 * learning.rigSigma().length);
+  EXPECT_GT(holding.rigSigma().turn.minCoeff(), 1.3 * learning.rigSigma().turn.minCoeff());
+  fmt::print("lengths {:.5f}, {:.5f}; turns {:.6f}, {:.6f} rad\n", holding.rigSigma().length,
+             learning.rigSigma().length, holding.rigSigma().turn.minCoeff(),
+             learning.rigSigma().turn.minCoeff());
+}
+
 TEST(VioEstimator, BearsAWrongCalibrationAndTellsHonestly) {
   // 0.1 deg and 5 mm, what a car's calibration is worth, against the same rig told exactly.
   constexpr int kSeeds = 4;

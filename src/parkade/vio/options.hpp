@@ -116,7 +116,7 @@ struct VioCalibrationOptions {
             "Estimate each camera's time offset to the IMU while driving.");
     v.field("learn_sigmas", learn_sigmas,
             "Learn how wrong the calibration is from how far cameras turn out to be off; the "
-            "sigmas are where that begins.");
+            "sigmas are where that begins. Not where the rig tells them.");
     v.field("position_sigma", position_sigma, "m", "Error of the calibrated positions, 1 sigma.",
             1e-5, 1.0);
     v.field("rotation_sigma_deg", rotation_sigma_deg, "deg",
