@@ -19,6 +19,8 @@ constexpr double kMostSlant = 0.89;     // cosine of 27 degrees
 constexpr double kAlongFront = 0.1745;  // rad, 10 degrees
 constexpr double kSideBySide = 0.1047;  // rad, 6 degrees
 constexpr double kMostOff = 0.45;       // rad, however short
+constexpr double kPlainSide = 0.8;      // m of each side in sight
+constexpr double kShortAcross = 0.6;    // m of a line that meets a side
 constexpr double kEndOff = 0.06;  // m, of a piece of line: short ones know their direction badly
 
 // How far (rad) the direction of a line may be off of which so much (m) is seen.
@@ -64,16 +66,12 @@ class MarkPairing {
     if (!fitsRow(left, length) || !fitsRow(right, length)) return std::nullopt;
     const double cosine = std::abs(front.dot(c.inward)) / length;
     if (cosine > kMostSlant) return std::nullopt;
-    if (crossesFront(left, front) || crossesFront(right, front)) {
+    const bool is_plain = std::min(left.visible, right.visible) >= kPlainSide && cosine <= kSquare;
+    for (const SlotMark* mark : {&left, &right}) {
       // A short piece of line, or what passes for one, knows its direction less well than two
       // sides.
-      constexpr double kShort = 0.6;  // m
-      constexpr double kPlain = 0.8;  // m of each side
-      const auto isShort = [&](const SlotMark& mark) {
-        return !crossesFront(mark, front) || mark.across_length < kShort;
-      };
-      if (!isShort(left) || !isShort(right)) return std::nullopt;
-      if (std::min(left.visible, right.visible) < kPlain || cosine > kSquare) return std::nullopt;
+      const bool may_cross = is_plain && mark->across_length < kShortAcross;
+      if (!may_cross && crossesFront(*mark, front)) return std::nullopt;
     }
     c.shape = cosine > kSquare ? SlotShape::kSlanted : SlotShape::kPerpendicular;
     if (width < options_.min_width_m || width > options_.max_width_m) {

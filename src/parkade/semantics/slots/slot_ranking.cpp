@@ -62,13 +62,13 @@ class SlotRanking {
   // hidden or worn. Where others are narrower, a wide one is doubtful, less so if the place of that
   // line is seen to be bare, and not if its front is painted all along then, nor if that is painted
   // from corner to corner and no further, or up to a neighbour's at one of them: nothing was taken
-  // into it then. What borders on a
-  // likelier perpendicular slot is hardly a parallel one, and the entrances of slots that share a
-  // line lie in one line.
+  // into it then. What borders on a likelier perpendicular slot is hardly a parallel one, and the
+  // entrances of slots that share a line lie in one line.
   [[nodiscard]] double doubtBy(const SlotCandidate& c, const SlotCandidate& other) const {
     constexpr double kSure = 1.0;    // log-odds of what speaks against others
     constexpr double kWider = 0.35;  // m
     constexpr double kBare = 1.0;
+    constexpr double kPaintedAlong = 0.9;
     if (other.score < kSure || other.shape == SlotShape::kParallel) return 0.0;
     const bool share = other.right == c.left || other.left == c.right;
     if (c.shape == SlotShape::kParallel && share && other.score > c.score) return 3.0;
@@ -78,10 +78,9 @@ class SlotRanking {
     if (share && other.score > c.score && !inLine(c, other)) doubt += 2.0;
     const double narrower = other.width();
     if (c.shape != SlotShape::kParallel && c.width() - narrower > kWider && !frontEnds(c)) {
-      if (!isBareAt(c, narrower))
-        doubt += 2.0;
-      else if (!isFrontPainted(c))
-        doubt += kBare;
+      // Across the gap beside a pillar no front goes on.
+      const double if_bare = paintOfFront(c) > kPaintedAlong ? 0.0 : kBare;
+      doubt += isBareAt(c, narrower) ? if_bare : 2.0;
     }
     return doubt;
   }
@@ -114,7 +113,7 @@ class SlotRanking {
     const Vector2d u = c.front().normalized();
     const Vector2d left = c.left->p;
     const Vector2d right = c.right->p;
-    if (probe_.along(left + kPast * u, right - kPast * u).paint <= kPainted) return false;
+    if (paintOfFront(c) <= kPainted) return false;
     const bool ends_left = probe_.along(left - kPast * u, left - kFar * u).floor > kBare;
     const bool ends_right = probe_.along(right + kPast * u, right + kFar * u).floor > kBare;
     const auto neighbour = [&](const auto& shares) {
@@ -127,12 +126,11 @@ class SlotRanking {
            (ends_left || ends_right);
   }
 
-  // From corner to corner: across the gap beside a pillar no front goes on.
-  [[nodiscard]] bool isFrontPainted(const SlotCandidate& c) const {
-    constexpr double kPainted = 0.9;
+  // Share, from corner to corner.
+  [[nodiscard]] double paintOfFront(const SlotCandidate& c) const {
     constexpr double kInside = 0.15;  // m from a corner
-    const Vector2d u = c.front().normalized();
-    return probe_.along(c.left->p + kInside * u, c.right->p - kInside * u).paint > kPainted;
+    const Vector2d inside = kInside * c.front().normalized();
+    return probe_.along(c.left->p + inside, c.right->p - inside).paint;
   }
 
   // Whether both places of a side line that would leave a slot of this width hold nothing but
