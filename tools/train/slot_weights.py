@@ -8,6 +8,8 @@ Logistic regression with a Gaussian prior over the candidates that `parkade benc
 slot_weights.hpp. What others say against a candidate (doubt) depends on the weights in use:
 build and repeat once.
 
+With --keep the weights of a header written before stand, and only those of clues that it does not know are fitted.
+
 Example:
   parkade bench semantics --garages random:440-499 --set frames=8 --slot-trials --out TRIALS
   tools/train/slot_weights.py TRIALS/slot_trials.csv --out src/parkade/semantics/slots/slot_weights.hpp
@@ -15,6 +17,7 @@ Example:
 import argparse
 import csv
 import pathlib
+import re
 import sys
 
 import numpy as np
@@ -55,12 +58,31 @@ def counts(names, inputs, right, along):
     return np.where(parallel & (right > 0.5), along, 1.0)
 
 
-def fit(names, inputs, right, count, prior):
+def standing(path):
+    """Weights by name, of a header that this program wrote."""
+    try:
+        text = pathlib.Path(path).read_text()
+    except OSError as error:
+        sys.exit(f"{path}: {error}")
+    weights = {name: float(weight) for weight, name in re.findall(r"^ *(-?[\d.]+), *// (\w+)$", text, re.MULTILINE)}
+    for name, sign, key in (("intercept", 1.0, "kSlotIntercept"), ("doubt", -1.0, "kSlotDoubtWeight")):
+        found = re.search(rf"{key} = (-?[\d.]+);", text)
+        if not found:
+            sys.exit(f"{path}: no {key}; give a header that tools/train/slot_weights.py wrote")
+        weights[name] = sign * float(found[1])
+    return weights
+
+
+def fit(names, inputs, right, count, prior, kept):
     """Weights of the inputs (doubt first) and the intercept."""
     x = np.hstack([inputs, np.ones((len(inputs), 1))])
+    names = ["doubt", *names, "intercept"]
     precision = np.full(x.shape[1], prior)
     precision[-1] = 1e-3
-    mean = np.array([BY_HAND.get(name, 0.0) for name in ["doubt", *names]] + [0.0])
+    mean = np.array([BY_HAND.get(name, 0.0) for name in names])
+    for i, name in enumerate(names):
+        if name in kept:
+            mean[i], precision[i] = kept[name], 1e9
     w = np.zeros(x.shape[1])
     for _ in range(40):
         p = 1.0 / (1.0 + np.exp(-x @ w))
@@ -106,16 +128,18 @@ def main():
                         help="precision of the prior on weights")
     parser.add_argument("--along", type=float, default=3.0,
                         help="slots along the aisle, rarer in these garages than elsewhere, count so often")
+    parser.add_argument("--keep", help="header written before, whose weights stand")
     args = parser.parse_args()
+    kept = standing(args.keep) if args.keep else {}
     names, garages, right, inputs = read(args.trials)
     count = counts(names, inputs, right, args.along)
     log_odds = np.zeros(len(right))
     for fold in range(FOLDS):
         out = garages % FOLDS == fold
-        weights, intercept = fit(names, inputs[~out], right[~out], count[~out], args.prior)
+        weights, intercept = fit(names, inputs[~out], right[~out], count[~out], args.prior, kept)
         log_odds[out] = inputs[out] @ weights + intercept
     report(garages, right, log_odds)
-    weights, intercept = fit(names, inputs, right, count, args.prior)
+    weights, intercept = fit(names, inputs, right, count, args.prior, kept)
     print(f"one unit of doubt takes {-weights[0]:.2f}")
     write(args.out, names, weights, intercept)
 

@@ -160,7 +160,8 @@ void SlotScore::compare(const BevGeometry& geometry, const std::vector<SlotObser
   std::vector<bool> taken(slots.size(), false);
   for (const SlotObservation& f : found) {
     const auto distance = [&](const Vector2d& p) { return (p - geometry.center).norm(); };
-    if (std::max(distance(f.corners[0]), distance(f.corners[1])) > kSlotReach) continue;
+    // One a little beyond may be a true one that is not.
+    const bool within = std::max(distance(f.corners[0]), distance(f.corners[1])) <= kSlotReach;
     std::size_t best = slots.size();
     double best_off = kMatch;
     for (std::size_t i = 0; i < slots.size(); ++i) {
@@ -170,9 +171,10 @@ void SlotScore::compare(const BevGeometry& geometry, const std::vector<SlotObser
       best_off = off;
       best = i;
     }
-    ++told_;
+    if (within) ++told_;
     if (best == slots.size()) continue;
     taken[best] = true;
+    if (!within) continue;
     ++right_;
     measure(geometry, f, slots[best]);
   }

@@ -19,8 +19,8 @@ constexpr double kMostSlant = 0.89;     // cosine of 27 degrees
 constexpr double kAlongFront = 0.1745;  // rad, 10 degrees
 constexpr double kSideBySide = 0.1047;  // rad, 6 degrees
 constexpr double kMostOff = 0.45;       // rad, however short
-constexpr double kPlainSide = 0.8;      // m of each side in sight
-constexpr double kShortAcross = 0.6;    // m of a line that meets a side
+constexpr double kPlainSide = 0.8;      // m of a side in sight
+constexpr double kShortAcross = 0.9;    // m of a line that meets a side
 constexpr double kEndOff = 0.06;  // m, of a piece of line: short ones know their direction badly
 
 // How far (rad) the direction of a line may be off of which so much (m) is seen.
@@ -66,10 +66,9 @@ class MarkPairing {
     if (!fitsRow(left, length) || !fitsRow(right, length)) return std::nullopt;
     const double cosine = std::abs(front.dot(c.inward)) / length;
     if (cosine > kMostSlant) return std::nullopt;
-    const bool is_plain = std::min(left.visible, right.visible) >= kPlainSide && cosine <= kSquare;
+    const bool is_plain = std::max(left.visible, right.visible) >= kPlainSide && cosine <= kSquare;
     for (const SlotMark* mark : {&left, &right}) {
-      // A short piece of line, or what passes for one, knows its direction less well than two
-      // sides.
+      // A short piece of line, or what passes for one, knows its direction less well than sides.
       const bool may_cross = is_plain && mark->across_length < kShortAcross;
       if (!may_cross && crossesFront(*mark, front)) return std::nullopt;
     }
@@ -94,7 +93,7 @@ class MarkPairing {
   [[nodiscard]] static bool runSideBySide(const SlotMark& left, const SlotMark& right) {
     // What is seen of a mark's direction: of a bar its own length.
     const auto seen = [](const SlotMark& mark) {
-      return mark.is_bar ? mark.across_length : mark.visible;
+      return mark.is_bar || mark.is_front_end ? mark.across_length : mark.visible;
     };
     const double shorter = std::min(seen(left), seen(right));
     return left.inward.dot(right.inward) > std::cos(allowedAngle(kSideBySide, shorter));
@@ -187,7 +186,25 @@ class MarkPairing {
     if (least - depth < kLeast) return false;
     const LabelProbe::Shares rest = probe_.along(front.p + (depth + kStart) * front.inward,
                                                  front.p + least * front.inward, 0.08);
-    return rest.floor > 0.9;
+    return rest.floor > 0.9 && !isFaintLine(front, depth + kStart, least);
+  }
+
+  // Whether a side line is held for one, on average from one distance to another, where it is no
+  // longer labelled so.
+  [[nodiscard]] bool isFaintLine(const SlotMark& front, double from, double to) const {
+    constexpr double kBare = -5.0;  // log-odds
+    const double step = probe_.labels().geometry.metres_per_px;
+    const Vector2d aside = step * Vector2d(-front.inward.y(), front.inward.x());
+    double sum = 0.0;
+    int count = 0;
+    for (double d = from; d <= to; d += step) {
+      const Vector2d p = front.p + d * front.inward;
+      if (probe_.at(p) != SemanticClass::kFloor) continue;
+      sum += std::max(
+          {probe_.slotEvidence(p), probe_.slotEvidence(p + aside), probe_.slotEvidence(p - aside)});
+      ++count;
+    }
+    return count > 0 && sum > kBare * count;
   }
 
   void tellMarking(SlotCandidate& c) const {

@@ -79,7 +79,8 @@ class SlotClueFinder {
             flag(c.mark_between),
             0.5 * (flag(c.left->is_bar) + flag(c.right->is_bar)),
             most(3.0 * largestAngle(c)),
-            0.5 * c.ends_short};
+            0.5 * c.ends_short,
+            0.5 * (flag(c.left->is_front_end) + flag(c.right->is_front_end))};
   }
 
  private:

@@ -13,7 +13,7 @@ namespace parkade {
 
 struct SlotCandidate;
 
-inline constexpr int kNumSlotClues = 23;
+inline constexpr int kNumSlotClues = 24;
 
 /// What speaks for or against two marks being the entrance of a slot; each from 0 to about 1.
 using SlotClues = std::array<double, kNumSlotClues>;
@@ -25,7 +25,7 @@ inline constexpr std::array<std::string_view, kNumSlotClues> kSlotClueNames = {
     "t",           "l",          "stop_in_front", "slanted",
     "parallel",    "neighbours", "pillar",        "unusual_width",
     "skew",        "faint",      "turned_out",    "mark_between",
-    "bars",        "angle",      "ends_short"};
+    "bars",        "angle",      "ends_short",    "front_ends"};
 
 /// Log-odds of a slot from its clues: logistic regression over candidates in random garages of the
 /// development (docs/math/slots.md, equation (3c)).

@@ -76,6 +76,16 @@ TEST(SlotClues, SidesMayEndTooEarly) {
   PaintedFloor floor;
   gap.paint(floor);
   EXPECT_TRUE(slotsOf(floor).empty());
+  // Too worn for labels, but held for lines: they go on.
+  PaintedFloor whole;
+  Row slot = gap;
+  slot.depth = 5.0;
+  slot.paint(whole);
+  PaintedFloor worn = floor;
+  worn.labels.slot_line = cv::Mat(floor.labels.labels.size(), CV_8UC1, cv::Scalar(0.0));
+  worn.labels.slot_line.setTo(255.0 - 3.0 * kEvidencePerLogOdds,
+                              whole.labels.labels == static_cast<int>(SemanticClass::kSlotLine));
+  EXPECT_EQ(slotsOf(worn).size(), 1U);
   const double x = gap.front(1).x();
   PaintedFloor hidden = floor;  // a pillar before the end of one of them
   hidden.polygon({{x + 0.4, -9.0}, {x + 0.4, -3.4}, {x - 0.4, -3.4}, {x - 0.4, -9.0}},

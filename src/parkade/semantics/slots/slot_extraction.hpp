@@ -24,7 +24,7 @@ struct SlotOptions {
   double usual_depth_m = 5.0;
   double usual_parallel_depth_m = 2.2;
   double min_confidence = 0.7;
-  double min_faint_contrast = 1.0;
+  double min_faint_contrast = 1.5;
 
   void visit(OptionVisitor& v) {
     v.field("min_width_m", min_width_m, "m",

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+
+#include "parkade/semantics/slots/line_ends.hpp"
 
 namespace parkade {
 namespace {
@@ -17,7 +18,7 @@ constexpr double kLeastMet = 0.25;   // m of side line to see, where another lin
 constexpr double kLeastOpen = 0.35;  // the same without
 constexpr double kLongestBar = 0.9;  // m
 constexpr double kSteepest = 0.42;   // sine of the least angle between lines that meet
-constexpr double kFaint = -1.5;      // log-odds of a worn end of a line
+constexpr double kBack = 0.15;       // m from a line's end, from where its paint is followed on
 constexpr double kBeyond = 0.9;      // m in front of an entrance without its side going on
 
 struct Stroke {
@@ -30,93 +31,6 @@ struct Stroke {
   bool is_met = false;  // some side ends at it
 
   [[nodiscard]] Vector2d normal() const { return {-along.y(), along.x()}; }
-};
-
-double greyAt(const cv::Mat& grey, const Vector2d& p) {
-  const int u = std::clamp(static_cast<int>(std::floor(p.x())), 0, grey.cols - 2);
-  const int v = std::clamp(static_cast<int>(std::floor(p.y())), 0, grey.rows - 2);
-  const double a = std::clamp(p.x() - u, 0.0, 1.0);
-  const double b = std::clamp(p.y() - v, 0.0, 1.0);
-  const auto at = [&](int y, int x) { return static_cast<double>(grey.at<std::uint8_t>(y, x)); };
-  return (1.0 - b) * ((1.0 - a) * at(v, u) + a * at(v, u + 1)) +
-         b * ((1.0 - a) * at(v + 1, u) + a * at(v + 1, u + 1));
-}
-
-// Finds where the paint of a line ends.
-class EndFinder {
- public:
-  EndFinder(const cv::Mat& grey, const LabelProbe& probe) : grey_(grey), probe_(probe) {}
-
-  struct End {
-    Vector2d p;  // where the paint ends, on the line's axis
-    double sigma_px;
-  };
-  // From a point on the line outwards; none where the end is hidden or beyond the picture.
-  [[nodiscard]] std::optional<End> from(const Vector2d& start, const Vector2d& outward,
-                                        double width) const {
-    const BevGeometry& g = probe_.labels().geometry;
-    const double step = 0.5 * g.metres_per_px;
-    constexpr double kReach = 1.2;  // m
-    constexpr double kClear = 0.2;  // m of floor that ends a line
-    double last = 0.0;
-    double s = 0.0;
-    for (; s < kReach && s - last < kClear; s += step) {
-      const Vector2d p = start + s * outward;
-      if (probe_.isPaint(p) || isFaintPaint(p)) {
-        last = s;
-      } else if (probe_.isHidden(p)) {
-        return std::nullopt;
-      }
-    }
-    if (s >= kReach) return std::nullopt;
-    const Vector2d at = start + (last + step) * outward;
-    if (const auto shift = edge(at, outward, width)) return End{at + *shift * outward, 0.4};
-    return End{at, 0.8};
-  }
-
- private:
-  // Worn ends of lines: floor by its label, and a slot's line nearly as likely.
-  [[nodiscard]] bool isFaintPaint(const Vector2d& p) const {
-    if (probe_.at(p) != SemanticClass::kFloor) return false;
-    return probe_.slotEvidence(p) > kFaint;
-  }
-
-  // m along outward from where labels end to where the picture's edge is.
-  [[nodiscard]] std::optional<double> edge(const Vector2d& at, const Vector2d& outward,
-                                           double width) const {
-    constexpr int kHalf = 12;  // samples each way, half a pixel apart
-    const BevGeometry& g = probe_.labels().geometry;
-    const double step = 0.5 * g.metres_per_px;
-    const Vector2d aside(-outward.y(), outward.x());
-    std::array<double, 2 * kHalf + 1> values{};
-    for (int i = -kHalf; i <= kHalf; ++i) {
-      for (const double k : {-0.25, 0.0, 0.25}) {
-        values[static_cast<std::size_t>(i + kHalf)] +=
-            greyAt(grey_, g.toPixel(at + i * step * outward + k * width * aside)) / 3.0;
-      }
-    }
-    const auto mean = [&](int from, int to) {
-      double sum = 0.0;
-      for (int i = from; i <= to; ++i) sum += values[static_cast<std::size_t>(i + kHalf)];
-      return sum / (to - from + 1);
-    };
-    // Close to the end: paint that meets the line may be all there is of it.
-    const double paint = mean(-5, -3);
-    const double floor = mean(5, 10);
-    constexpr double kContrast = 8.0;
-    if (std::abs(paint - floor) < kContrast) return std::nullopt;
-    const double sign = paint > floor ? 1.0 : -1.0;
-    const double level = 0.5 * (paint + floor);
-    for (int i = -4; i < 5; ++i) {
-      const double here = sign * (values[static_cast<std::size_t>(i + kHalf)] - level);
-      const double next = sign * (values[static_cast<std::size_t>(i + 1 + kHalf)] - level);
-      if (here >= 0.0 && next < 0.0) return (i + here / (here - next)) * step;
-    }
-    return std::nullopt;
-  }
-
-  const cv::Mat& grey_;
-  const LabelProbe& probe_;
 };
 
 class MarkFinder {
@@ -146,7 +60,11 @@ class MarkFinder {
       openEnd(i, 1.0);
       openEnd(i, -1.0);
     }
-    for (std::size_t i = 0; i < strokes_.size(); ++i) loneBar(i);
+    for (std::size_t i = 0; i < strokes_.size(); ++i) {
+      loneBar(i);
+      frontEnd(i, 1.0);
+      frontEnd(i, -1.0);
+    }
     return std::move(marks_);
   }
 
@@ -169,11 +87,10 @@ class MarkFinder {
     constexpr double kWithin = 0.15;
     const bool short_one = other.length < kLongestBar;
     // Lines that only come near to each other have floor between them; but a side that points at a
-    // line that passes, or at a bar's middle, has lost its own end.
-    const bool passes = !short_one && t > 0.0 && t < other.length;
-    const bool at_middle = short_one && std::abs(t - 0.5 * other.length) < kWithin;
-    if (!passes && !at_middle && !reaches(side, s, mark.p)) return;
+    // line that reaches there, or at a bar's middle, has lost its own end.
     if (!reaches(other, t, mark.p)) return;
+    const bool at_middle = short_one && std::abs(t - 0.5 * other.length) < kWithin;
+    if (short_one && !at_middle && !reaches(side, s, mark.p)) return;
     if (short_one && t > kWithin && t < other.length - kWithin) other.is_bar = true;
     mark.across = other.along;
     mark.across_length = other.length;
@@ -195,15 +112,31 @@ class MarkFinder {
     const double inside = std::clamp(s, 0.0, stroke.length);
     const double gap = std::abs(s - inside);
     if (gap < 0.1) return true;
-    const LabelProbe::Shares between = probe_.along(stroke.begin + inside * stroke.along, p, 0.04);
-    return gap <= kMeet ? between.floor < 0.5 : between.paint > 0.8;
+    const Vector2d tip = stroke.begin + inside * stroke.along;
+    const LabelProbe::Shares between = probe_.along(tip, p, 0.04);
+    if (gap > kMeet) return between.paint > 0.8;
+    return between.floor < 0.5 || wornShare(tip, p) > 0.5;
+  }
+
+  // Share of a worn piece of line that is paint by its label, or is held for it nearly as much:
+  // short ones pass for lane lines.
+  [[nodiscard]] double wornShare(const Vector2d& a, const Vector2d& b) const {
+    constexpr double kNearly = -2.0;  // log-odds
+    constexpr int kSamples = 11;
+    int worn = 0;
+    for (int k = 0; k < kSamples; ++k) {
+      const Vector2d p = a + k / (kSamples - 1.0) * (b - a);
+      const bool lane = probe_.at(p) == SemanticClass::kLaneLine;
+      if (lane || probe_.isPaint(p) || probe_.slotEvidence(p) > kNearly) ++worn;
+    }
+    return static_cast<double>(worn) / kSamples;
   }
 
   void openEnd(std::size_t i, double sign) {
     const Stroke& side = strokes_[i];
     const Vector2d outward = sign * side.along;
     const Vector2d tip = sign > 0.0 ? side.end : side.begin;
-    const double back = std::min(0.15, 0.5 * side.length);
+    const double back = std::min(kBack, 0.5 * side.length);
     const auto end = ends_.from(tip - back * outward, outward, side.width);
     if (!end) return;
     SlotMark mark;
@@ -247,6 +180,66 @@ class MarkFinder {
     for (const double sign : {-1.0, 1.0}) add(mark, sign * bar.normal(), 0.0, 0.0);
   }
 
+  // The end of an entrance line that sides meet elsewhere: a corner whose side is worn or hidden.
+  void frontEnd(std::size_t i, double sign) {
+    constexpr double kShortest = 1.5;  // m
+    constexpr double kApart = 0.5;     // m from another corner
+    const Stroke& front = strokes_[i];
+    if (!front.is_met || front.length < kShortest) return;
+    const Vector2d outward = sign * front.along;
+    const Vector2d tip = sign > 0.0 ? front.end : front.begin;
+    const auto end = ends_.from(tip - kBack * outward, outward, front.width);
+    if (!end) return;
+    SlotMark mark;
+    mark.p = end->p - 0.5 * front.width * outward;
+    mark.across = front.along;
+    mark.across_length = front.length;
+    mark.side = static_cast<int>(strokes_.size() + 2 * i) + (sign > 0.0 ? 1 : 0);
+    mark.width = front.width;
+    mark.sigma_along = 0.3 * pixel_;
+    mark.sigma_aside = std::hypot(end->sigma_px * pixel_, 0.01);
+    mark.is_front_end = true;
+    const std::vector<SlotMark> met = marksOn(front);
+    const auto is_near = [&](const SlotMark& other) { return (other.p - mark.p).norm() < kApart; };
+    if (std::any_of(met.begin(), met.end(), is_near)) return;
+    for (const SlotMark& other : met) {
+      if (maySideBe(mark.p, other.inward)) add(mark, other.inward, 0.0, 0.0);
+    }
+  }
+
+  // Whether a side from p on is hidden, or held for one on average, within some pixels.
+  [[nodiscard]] bool maySideBe(const Vector2d& p, const Vector2d& inward) const {
+    constexpr double kFrom = 0.12;  // m
+    constexpr double kTo = 1.0;
+    constexpr double kLeastSeen = 0.25;
+    constexpr double kNearly = -4.0;  // log-odds
+    const Vector2d aside = pixel_ * Vector2d(-inward.y(), inward.x());
+    for (int k = -3; k <= 3; ++k) {
+      double sum = 0.0;
+      int seen = 0;
+      int samples = 0;
+      for (double d = kFrom; d <= kTo; d += pixel_, ++samples) {
+        const Vector2d q = p + d * inward + k * aside;
+        if (probe_.isHidden(q)) continue;
+        sum += probe_.slotEvidence(q);
+        ++seen;
+      }
+      if (seen < kLeastSeen * samples || sum > kNearly * seen) return true;
+    }
+    return false;
+  }
+
+  // Where sides meet a line.
+  [[nodiscard]] std::vector<SlotMark> marksOn(const Stroke& front) const {
+    constexpr double kOff = 0.3;  // m
+    std::vector<SlotMark> on;
+    for (const SlotMark& mark : marks_) {
+      if (mark.is_front_end || mark.across != front.along) continue;
+      if (std::abs((mark.p - front.begin).dot(front.normal())) < kOff) on.push_back(mark);
+    }
+    return on;
+  }
+
   // Whether there is such a mark now.
   bool add(SlotMark mark, const Vector2d& inward, double visible, double least) {
     if (visible < least) return false;
@@ -266,7 +259,7 @@ class MarkFinder {
   }
 
   const LabelProbe& probe_;
-  EndFinder ends_;
+  LineEndFinder ends_;
   double pixel_;
   std::vector<Stroke> strokes_;
   std::vector<SlotMark> marks_;

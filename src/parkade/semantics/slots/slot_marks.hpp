@@ -25,18 +25,21 @@ struct SlotMark {
   /// m, of the entrances in its row where the line is too faint for labels (slot_rows.hpp); or 0.
   double row_width = 0.0;
 
-  bool is_bar = false;  ///< only the bar of a T is seen, no side line
+  bool is_bar = false;        ///< only the bar of a T is seen, no side line
+  bool is_front_end = false;  ///< only the end of an entrance line is seen, no side line
 
   [[nodiscard]] bool isFaint() const { return row_width > 0.0; }
 };
 
 /// Marks of all slot lines among the segments, both ways along each. The side line must end at its
-/// mark: what goes on beyond (0.9 m) is no side of an entrance. Where a line's end is hidden, or
-/// another line meets it, there is no open end; worn ends are followed where the network holds them
-/// for paint nearly as much, and sides that point at a line that passes, or at the middle of a bar,
-/// reach over 0.8 m of floor. Bars that no line meets make marks both ways, with inward across them
-/// and side the bar itself (is_bar). grey: CV_8UC1, the picture that the labels are of;
-/// its edge places open ends to a fraction of a pixel.
+/// mark: what goes on beyond (0.9 m) is no side of an entrance. Where a line's end is hidden by
+/// more than a leg or a pole, or another line meets it, there is no open end; worn ends are
+/// followed where the network holds them for paint nearly as much, and sides that point at a line
+/// that reaches there, or at the middle of a bar, reach over 0.8 m of floor. Bars that no line
+/// meets make marks both ways, with inward across them and side the bar itself (is_bar); the ends
+/// of entrance lines make one with inward as that of the sides which meet them elsewhere
+/// (is_front_end). grey: CV_8UC1, the picture that the labels are of; its edge places open ends to
+/// a fraction of a pixel.
 std::vector<SlotMark> findSlotMarks(const cv::Mat& grey, const LabelProbe& probe,
                                     const std::vector<LineSegment>& segments);
 

@@ -34,7 +34,7 @@ int meetings(const PaintedFloor& floor) {
   int count = 0;
   for (const SlotMark& mark :
        findSlotMarks(floor.bev.image, LabelProbe(floor.labels), cornerless())) {
-    if (mark.across.isZero()) continue;
+    if (mark.across.isZero() || mark.is_front_end) continue;
     EXPECT_LT((mark.p - Vector2d(2.0, -3.0)).norm(), 0.02);  // half a pixel
     ++count;
   }
@@ -53,6 +53,45 @@ TEST(SlotMarks, LinesDoNotMeetOverBareFloor) {
   floor.line({1.5, -3.0}, {0.5, -3.0}, kLine);
   floor.line({2.0, -3.5}, {2.0, -5.5}, kLine);
   EXPECT_EQ(meetings(floor), 0);
+}
+
+// An L whose side has lost its end, and whose front's passes for a lane line.
+TEST(SlotMarks, ASideThatPointsAtACornerMeetsIt) {
+  PaintedFloor floor;
+  floor.line({2.0, -3.0}, {2.4, -3.0}, kLine, SemanticClass::kLaneLine);
+  floor.line({2.4, -3.0}, {4.5, -3.0}, kLine);
+  floor.line({2.0, -3.5}, {2.0, -5.5}, kLine);
+  bool found = false;
+  for (const SlotMark& mark :
+       findSlotMarks(floor.bev.image, LabelProbe(floor.labels),
+                     {segment({2.3, -3.0}, {4.5, -3.0}), segment({2.0, -3.5}, {2.0, -5.5})})) {
+    if (mark.inward.y() > -0.9 || mark.across.isZero() || mark.is_front_end) continue;
+    EXPECT_LT((mark.p - Vector2d(2.0, -3.0)).norm(), 0.02);
+    found = true;
+  }
+  EXPECT_TRUE(found);
+}
+
+// Where the side at its end is hidden.
+TEST(SlotMarks, TheEndOfAnEntranceLineIsACorner) {
+  PaintedFloor floor;
+  floor.line({4.5, -3.0}, {2.0, -3.0}, kLine);
+  std::vector<LineSegment> segments = {segment({4.5, -3.0}, {2.0, -3.0})};
+  const auto ends = [&] {
+    std::vector<SlotMark> marks =
+        findSlotMarks(floor.bev.image, LabelProbe(floor.labels), segments);
+    std::erase_if(marks, [](const SlotMark& mark) { return !mark.is_front_end; });
+    return marks;
+  };
+  EXPECT_TRUE(ends().empty());  // any line's
+  floor.line({4.5, -3.0}, {4.5, -4.0}, kLine);
+  segments.push_back(segment({4.5, -3.0}, {4.5, -4.0}));
+  EXPECT_TRUE(ends().empty());  // where no side is
+  floor.polygon({{1.0, -6.0}, {3.0, -6.0}, {3.0, -3.2}, {1.0, -3.2}}, SemanticClass::kVehicle, 30);
+  const std::vector<SlotMark> found = ends();
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_LT((found[0].p - Vector2d(2.0, -3.0)).norm(), 0.04);
+  EXPECT_LT((found[0].inward - Vector2d(0.0, -1.0)).norm(), 1e-6);
 }
 
 // The bar of a T at (2, -3), and what is measured of its line.
@@ -102,6 +141,22 @@ double openEndOf(double doubt) {
 TEST(SlotMarks, WornEndsOfLinesAreFollowed) {
   EXPECT_NEAR(openEndOf(1.0), -3.06, 0.06);
   EXPECT_NEAR(openEndOf(4.0), -3.56, 0.08);
+}
+
+// What somebody who stands before a line's end hides.
+TEST(SlotMarks, ALegHidesNoEndOfALine) {
+  for (const double hidden : {0.3, 0.8}) {
+    PaintedFloor floor;
+    floor.line({2.0, -3.0}, {2.0, -5.5}, kLine);
+    floor.polygon({{1.0, -2.93}, {3.0, -2.93}, {3.0, -2.93 + hidden}, {1.0, -2.93 + hidden}},
+                  SemanticClass::kPedestrian, 30);
+    const std::vector<SlotMark> marks = findSlotMarks(floor.bev.image, LabelProbe(floor.labels),
+                                                      {segment({2.0, -3.0}, {2.0, -5.5})});
+    const bool found = std::any_of(marks.begin(), marks.end(), [](const SlotMark& mark) {
+      return (mark.p - Vector2d(2.0, -3.0)).norm() < 0.06;
+    });
+    EXPECT_EQ(found, hidden < 0.5) << hidden;
+  }
 }
 
 TEST(SlotMarks, ABarByItselfMayHaveALineOnEitherHand) {

@@ -15,6 +15,8 @@ namespace {
 
 using Eigen::Vector2d;
 
+constexpr double kSure = 1.0;  // log-odds of what speaks against others
+
 // Share of a's area that lies in b, from a grid of points.
 double shareInside(const std::array<Vector2d, 4>& a, const std::array<Vector2d, 4>& b) {
   constexpr int kSteps = 8;
@@ -50,7 +52,7 @@ class SlotRanking {
     for (const SlotCandidate& c : candidates_) {
       double doubt = 0.0;
       for (const SlotCandidate& other : candidates_) doubt += doubtBy(c, other);
-      doubts.push_back(std::min(doubt, kMost));
+      doubts.push_back(std::min(doubt + doubtOfWidth(c), kMost));
     }
     for (std::size_t i = 0; i < candidates_.size(); ++i) {
       candidates_[i].doubt = doubts[i];
@@ -58,31 +60,40 @@ class SlotRanking {
     }
   }
 
-  // Beside a pillar the gap between two slots is easily taken into one of them: the line between is
-  // hidden or worn. Where others are narrower, a wide one is doubtful, less so if the place of that
-  // line is seen to be bare, and not if its front is painted all along then, nor if that is painted
-  // from corner to corner and no further, or up to a neighbour's at one of them: nothing was taken
-  // into it then. What borders on a likelier perpendicular slot is hardly a parallel one, and the
-  // entrances of slots that share a line lie in one line.
-  [[nodiscard]] double doubtBy(const SlotCandidate& c, const SlotCandidate& other) const {
-    constexpr double kSure = 1.0;    // log-odds of what speaks against others
-    constexpr double kWider = 0.35;  // m
-    constexpr double kBare = 1.0;
-    constexpr double kPaintedAlong = 0.9;
+  // What borders on a likelier perpendicular slot is hardly a parallel one, and the entrances of
+  // slots that share a line lie in one line.
+  [[nodiscard]] static double doubtBy(const SlotCandidate& c, const SlotCandidate& other) {
     if (other.score < kSure || other.shape == SlotShape::kParallel) return 0.0;
     const bool share = other.right == c.left || other.left == c.right;
     if (c.shape == SlotShape::kParallel && share && other.score > c.score) return 3.0;
     if (other.score > c.score && liesAcross(c, other)) return 3.0;
     if (std::abs(other.inward.dot(c.inward)) < kParallelSides) return 0.0;
-    double doubt = 0.0;
-    if (share && other.score > c.score && !inLine(c, other)) doubt += 2.0;
-    const double narrower = other.width();
-    if (c.shape != SlotShape::kParallel && c.width() - narrower > kWider && !frontEnds(c)) {
-      // Across the gap beside a pillar no front goes on.
-      const double if_bare = paintOfFront(c) > kPaintedAlong ? 0.0 : kBare;
-      doubt += isBareAt(c, narrower) ? if_bare : 2.0;
+    return share && other.score > c.score && !inLine(c, other) ? 2.0 : 0.0;
+  }
+
+  // Beside a pillar the gap between two slots is easily taken into one of them: the line between is
+  // hidden or worn. Where others are narrower, a wide one is doubtful, less so if the place of that
+  // line is seen to be bare, and not if its front is painted all along, nor if it is but for little
+  // and ends at both corners, or at one of them where a neighbour begins at the other: nothing was
+  // taken into it then.
+  [[nodiscard]] double doubtOfWidth(const SlotCandidate& c) const {
+    constexpr double kWider = 0.35;  // m
+    constexpr double kBare = 2.0;
+    constexpr double kNotBare = 5.0;
+    constexpr double kPaintedAlong = 0.9;
+    if (c.shape == SlotShape::kParallel) return 0.0;
+    bool is_wider = false;
+    bool is_bare = true;
+    for (const SlotCandidate& other : candidates_) {
+      if (other.score < kSure || other.shape == SlotShape::kParallel) continue;
+      if (std::abs(other.inward.dot(c.inward)) < kParallelSides) continue;
+      if (c.width() - other.width() <= kWider) continue;
+      is_wider = true;
+      is_bare = is_bare && isBareAt(c, other.width());
     }
-    return doubt;
+    // Across the gap beside a pillar no front goes on.
+    if (!is_wider || paintOfFront(c) > kPaintedAlong || frontEnds(c)) return 0.0;
+    return is_bare ? kBare : kNotBare;
   }
 
   // Whether a side line of c begins at a corner of the other's entrance and runs along that one.
@@ -126,11 +137,13 @@ class SlotRanking {
            (ends_left || ends_right);
   }
 
-  // Share, from corner to corner.
+  // Share of what is seen, from corner to corner; 0 where that is less than half.
   [[nodiscard]] double paintOfFront(const SlotCandidate& c) const {
     constexpr double kInside = 0.15;  // m from a corner
     const Vector2d inside = kInside * c.front().normalized();
-    return probe_.along(c.left->p + inside, c.right->p - inside).paint;
+    const LabelProbe::Shares front = probe_.along(c.left->p + inside, c.right->p - inside);
+    const double seen = front.paint + front.floor;
+    return seen > 0.5 ? front.paint / seen : 0.0;
   }
 
   // Whether both places of a side line that would leave a slot of this width hold nothing but

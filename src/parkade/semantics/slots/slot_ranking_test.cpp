@@ -75,9 +75,22 @@ TEST(SlotRanking, AShortPieceOfLineAtACornerDoesNotDenyASlot) {
   EXPECT_NE(slotAt(slotsOf(floor), row.front(0)), nullptr);
 }
 
-// A car hides where narrower slots, as those beside, would have a line.
-TEST(SlotRanking, AWideSlotIsOneWhereItsFrontEnds) {
-  for (const bool goes_on : {false, true}) {
+// Of a T, smeared so that it looks turned.
+TEST(SlotRanking, ATurnedBarDoesNotDenyASlot) {
+  Row row;
+  row.count = 1;
+  row.marking = SlotMarking::kOpen;
+  PaintedFloor floor;
+  row.paint(floor);
+  const Vector2d half(0.32, 0.12);
+  floor.line(row.front(0) - half, row.front(0) + half, kLine);
+  EXPECT_NE(slotAt(slotsOf(floor), row.front(0)), nullptr);
+}
+
+// A car hides where narrower slots, as those beside, would have a line. A front with a hole may be
+// a narrower slot's and another's beyond a gap.
+TEST(SlotRanking, AWideSlotIsOneWhereItsFrontIsPaintedBehindACar) {
+  for (const bool has_hole : {false, true}) {
     Row narrow;
     narrow.x0 = 7.0;
     narrow.count = 3;
@@ -88,11 +101,15 @@ TEST(SlotRanking, AWideSlotIsOneWhereItsFrontEnds) {
     PaintedFloor floor;
     narrow.paint(floor);
     wide.paint(floor);
-    if (goes_on) floor.line(wide.front(1), wide.front(1) - Vector2d(0.8, 0.0), kLine);
+    floor.line(wide.front(1), wide.front(1) - Vector2d(0.8, 0.0), kLine);  // it goes on
+    if (has_hole) {
+      const Vector2d hole = wide.front(0) - Vector2d(2.66, 0.0);
+      floor.line(hole, hole - Vector2d(0.8, 0.0), 0.2, SemanticClass::kFloor, 90);
+    }
     floor.polygon({wide.front(0) + Vector2d(-0.3, -0.5), wide.front(1) + Vector2d(0.3, -0.5),
                    wide.rear(1) + Vector2d(0.3, 0.0), wide.rear(0) + Vector2d(-0.3, 0.0)},
                   SemanticClass::kVehicle, 30);
-    EXPECT_EQ(slotAt(slotsOf(floor), wide.front(0)) == nullptr, goes_on);
+    EXPECT_EQ(slotAt(slotsOf(floor), wide.front(0)) == nullptr, has_hole);
   }
 }
 

@@ -28,7 +28,7 @@ class RowScan {
     }
     constexpr double kFrom = 0.1;   // m behind the entrance
     constexpr double kTo = 4.0;     // farther in, cars and the picture's edge hide most
-    constexpr double kLeast = 1.0;  // m to see
+    constexpr double kLeast = 0.6;  // m to see
     const int count = static_cast<int>(length / kAcross) + 1;
     for (int i = 0; i < count; ++i) lines_.push_back(meanAlong(i, kFrom, kTo, kLeast));
     for (int i = 0; i < count; ++i) contrasts_.push_back(contrastAt(i));
@@ -176,7 +176,7 @@ std::vector<SlotMark> findFaintMarks(const BevLabels& labels,
       for (const RowScan::Peak& peak : scan.peaks(min_contrast)) {
         SlotMark mark = faintMark(*slot, from, origin + peak.at * u, peak, pixel);
         const auto known = [&](const SlotMark& other) {
-          return !other.is_bar && isSame(mark, other, u);
+          return !other.is_bar && !other.is_front_end && isSame(mark, other, u);
         };
         if (std::any_of(marks.begin(), marks.end(), known) ||
             std::any_of(faint.begin(), faint.end(), known)) {

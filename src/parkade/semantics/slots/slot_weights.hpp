@@ -33,6 +33,7 @@ inline constexpr SlotClues kSlotWeights = {
     -1.412,  // bars
     -0.614,  // angle
     -0.266,  // ends_short
+    -1.922,  // front_ends
 };
 
 }  // namespace parkade
