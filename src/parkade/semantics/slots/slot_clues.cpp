@@ -149,7 +149,8 @@ class SlotClueFinder {
     int feet = 0;
     for (double a = kAside; a <= 1.0 - kAside; a += across) {
       for (double b = 0.0; b < kDeep; b += along) {
-        if (isPillarFoot(pointIn(c.corners, a, b))) ++feet;
+        const Vector2d p = pointIn(c.corners, a, b);
+        if (isPillarFoot(p) && standsInside(c, p)) ++feet;
       }
     }
     return std::clamp((feet - kLeast) / kMost, 0.0, 1.0);
@@ -159,6 +160,36 @@ class SlotClueFinder {
     if (probe_.at(p) != SemanticClass::kPillar) return false;
     const Vector2d towards = (views_.viewAt(probe_.labels().geometry, p).foot - p).normalized();
     return !probe_.isHidden(p + 0.08 * towards) && !probe_.isHidden(p + 0.2 * towards);
+  }
+
+  // Whether the pillar seen at p stands between the sides. The edge of a smear runs along the sight
+  // line; what is seen of it in a slot may be of one that stands beside.
+  [[nodiscard]] bool standsInside(const SlotCandidate& c, const Vector2d& p) const {
+    constexpr double kMargin = 0.1;  // of the width
+    const Vector2d foot = footOf(p);
+    const Vector2d u = c.front().normalized();
+    const Vector2d deep(-u.y(), u.x());
+    const Vector2d entrance = foot - (foot - c.left->p).dot(deep) / c.inward.dot(deep) * c.inward;
+    const double share = (entrance - c.left->p).dot(u) / c.front().norm();
+    return share > kMargin && share < 1.0 - kMargin;
+  }
+
+  // Where a pillar that is seen at p stands: from there towards the camera as far as it is seen,
+  // ragged edges let alone.
+  [[nodiscard]] Vector2d footOf(const Vector2d& p) const {
+    constexpr double kAside = 0.16;  // m
+    constexpr double kGap = 0.2;
+    const double step = probe_.labels().geometry.metres_per_px;
+    const Vector2d to_camera = views_.viewAt(probe_.labels().geometry, p).foot - p;
+    const Vector2d towards = to_camera.normalized();
+    const Vector2d aside(-towards.y(), towards.x());
+    double last = 0.0;
+    for (double d = step; d < to_camera.norm() && d - last < kGap; d += step) {
+      for (double off = -kAside; off <= kAside; off += step) {
+        if (probe_.at(p + d * towards + off * aside) == SemanticClass::kPillar) last = d;
+      }
+    }
+    return p + last * towards;
   }
 
   // Whether the side line of a mark is an aisle's edge: beyond the mark a lane line carries it on.

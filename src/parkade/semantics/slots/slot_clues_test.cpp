@@ -67,6 +67,32 @@ TEST(SlotClues, WheelStopsAtTheEntrance) {
   EXPECT_LT(slotLogOdds(cluesOf(stop, row)), before - 3.0);
 }
 
+// A pillar as the camera in the picture's middle sees it: smeared away from it, with ragged edges.
+void addPillar(PaintedFloor& floor, const Vector2d& at) {
+  const Vector2d ray = at - floor.labels.geometry.center;
+  const Vector2d aside = Vector2d(-ray.y(), ray.x()).normalized();
+  for (int k = 0; k < 8; ++k) {
+    const Vector2d from = at + 0.1 * k * ray;
+    const Vector2d half = (0.25 + 0.09 * k) * aside;
+    floor.polygon({from - half, at + ray - half, at + ray + half, from + half},
+                  SemanticClass::kPillar, 60);
+  }
+}
+
+TEST(SlotClues, APillarThatStandsBesideIsNotInTheWay) {
+  Row row;
+  row.x0 = 7.0;
+  row.count = 1;
+  PaintedFloor inside;
+  row.paint(inside);
+  addPillar(inside, {5.6, -3.2});
+  EXPECT_GT(clue(cluesOf(inside, row), "pillar"), 0.2);
+  PaintedFloor beside;
+  row.paint(beside);
+  addPillar(beside, {4.1, -2.9});
+  EXPECT_EQ(clue(cluesOf(beside, row), "pillar"), 0.0);
+}
+
 // The gap between two slots along the aisle is as wide as a slot into it, but its lines are short.
 TEST(SlotClues, SidesMayEndTooEarly) {
   Row gap;
