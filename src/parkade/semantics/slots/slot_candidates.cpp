@@ -87,6 +87,9 @@ class MarkPairing {
     c.turned_out = turnedOut(c);
     if (!measureDepth(c)) return std::nullopt;
     tellMarking(c);
+    // A worn line by itself is hardly a side where the entrance does not show.
+    const bool shows = c.marking == SlotMarking::kClosed || c.marking == SlotMarking::kT;
+    if ((left.is_lone || right.is_lone) && !shows) return std::nullopt;
     return c;
   }
 

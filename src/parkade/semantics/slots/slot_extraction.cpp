@@ -81,11 +81,16 @@ std::vector<SlotObservation> extractSlots(const BevImage& bev, const BevLabels& 
   std::vector<SlotCandidate> candidates = pairSlotMarks(marks, probe, options);
   std::vector<const SlotCandidate*> likely =
       likelySlots(candidates, probe, views, options.min_confidence);
-  // The rows of these slots, with lines that are too worn for labels.
-  std::vector<SlotMark> all = findFaintMarks(labels, likely, marks, options.min_faint_contrast);
+  // The rows of these slots, and sides by themselves, with lines that are too worn for labels.
+  std::vector<SlotMark> all = marks;
+  for (const SlotMark& mark : findFaintMarks(labels, likely, marks, options.min_faint_contrast)) {
+    all.push_back(mark);
+  }
+  for (const SlotMark& mark : findLoneMarks(labels, likely, all, options.min_lone_contrast)) {
+    all.push_back(mark);
+  }
   std::vector<SlotCandidate> in_rows;
-  if (!all.empty()) {
-    all.insert(all.end(), marks.begin(), marks.end());
+  if (all.size() > marks.size()) {
     in_rows = pairSlotMarks(all, probe, options);
     for (const SlotCandidate* slot : likelySlots(in_rows, probe, views, options.min_confidence)) {
       if (slot->isFaint()) likely.push_back(slot);

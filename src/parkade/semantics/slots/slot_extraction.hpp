@@ -25,6 +25,7 @@ struct SlotOptions {
   double usual_parallel_depth_m = 2.2;
   double min_confidence = 0.7;
   double min_faint_contrast = 1.5;
+  double min_lone_contrast = 3.5;
 
   void visit(OptionVisitor& v) {
     v.field("min_width_m", min_width_m, "m",
@@ -47,6 +48,8 @@ struct SlotOptions {
     v.field("min_faint_contrast", min_faint_contrast, "log-odds",
             "Worn lines beside a slot stand out so much, on average along them, over the floor.",
             0.1, 10.0);
+    v.field("min_lone_contrast", min_lone_contrast, "log-odds",
+            "The same beside a slot's side where no slot of the row is told.", 0.1, 10.0);
   }
 };
 

@@ -24,6 +24,7 @@ struct SlotMark {
   double sigma_aside = 0.0;                           ///< m, across inward, of the picture alone
   /// m, of the entrances in its row where the line is too faint for labels (slot_rows.hpp); or 0.
   double row_width = 0.0;
+  bool is_lone = false;  ///< so faint, and no slot of its row is told
 
   bool is_bar = false;        ///< only the bar of a T is seen, no side line
   bool is_front_end = false;  ///< only the end of an entrance line is seen, no side line

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "parkade/geometry/planar.hpp"
+
 namespace parkade {
 namespace {
 
@@ -130,6 +132,24 @@ class RowScan {
   std::vector<double> contrasts_;
 };
 
+// Whether a slot lies beside a mark, in a direction along its entrance.
+bool liesBeside(const SlotCandidate& slot, const SlotMark& mark, const Vector2d& u) {
+  constexpr double kApart = 4.0;  // m
+  constexpr double kNearest = 0.3;
+  constexpr double kFarthest = 3.5;
+  const Vector2d d = 0.5 * (slot.left->p + slot.right->p) - mark.p;
+  return d.norm() < kApart && d.dot(u) > kNearest && d.dot(u) < kFarthest &&
+         slot.inward.dot(mark.inward) > 0.5;
+}
+
+// Along the entrance that begins at a mark: as the line that meets it there, or square.
+Vector2d entranceAlong(const SlotMark& mark) {
+  constexpr double kShort = 0.5;  // m: such know their direction badly
+  const Vector2d square(-mark.inward.y(), mark.inward.x());
+  if (mark.across_length <= kShort) return square;
+  return mark.across.dot(square) > 0.0 ? mark.across : Vector2d(-mark.across);
+}
+
 // Whether another mark stands for the same side line, at the same entrance.
 bool isSame(const SlotMark& a, const SlotMark& b, const Vector2d& u) {
   constexpr double kAside = 0.3;  // m
@@ -138,18 +158,32 @@ bool isSame(const SlotMark& a, const SlotMark& b, const Vector2d& u) {
          std::abs(a.inward.dot(b.inward)) > kParallelSides;
 }
 
-SlotMark faintMark(const SlotCandidate& slot, const SlotMark& from, const Vector2d& p,
-                   const RowScan::Peak& peak, double pixel) {
+SlotMark faintMark(const SlotMark& from, const Vector2d& p, const RowScan::Peak& peak,
+                   double pixel) {
   constexpr double kClear = 3.0;  // log-odds: such a line counts in full
   SlotMark mark;
   mark.p = p;
-  mark.inward = slot.inward;
   mark.width = from.width;
   mark.visible = peak.seen * std::min(1.0, peak.contrast / kClear);
   mark.sigma_along = 0.08;  // m: where the row's entrance lies, not this one's
   mark.sigma_aside = pixel;
-  mark.row_width = slot.front().norm();
   return mark;
+}
+
+// Of a side line of its own, unless that is among the marks or the others found.
+void addUnknown(SlotMark& mark, const Vector2d& u, const std::vector<SlotMark>& marks,
+                std::vector<SlotMark>& found) {
+  const auto known = [&](const SlotMark& other) {
+    return !other.is_bar && !other.is_front_end && isSame(mark, other, u);
+  };
+  if (std::any_of(marks.begin(), marks.end(), known) ||
+      std::any_of(found.begin(), found.end(), known)) {
+    return;
+  }
+  mark.side = 1;
+  for (const SlotMark& other : marks) mark.side = std::max(mark.side, other.side + 1);
+  for (const SlotMark& other : found) mark.side = std::max(mark.side, other.side + 1);
+  found.push_back(mark);
 }
 
 }  // namespace
@@ -163,8 +197,6 @@ std::vector<SlotMark> findFaintMarks(const BevLabels& labels,
   std::vector<SlotMark> faint;
   if (labels.slot_line.empty()) return faint;
   const double pixel = labels.geometry.metres_per_px;
-  int side = 0;
-  for (const SlotMark& mark : marks) side = std::max(side, mark.side + 1);
   for (const SlotCandidate* slot : slots) {
     if (slot->shape == SlotShape::kParallel) continue;
     const double width = slot->front().norm();
@@ -174,20 +206,46 @@ std::vector<SlotMark> findFaintMarks(const BevLabels& labels,
       const Vector2d origin = from.p + kBegin * u;
       const RowScan scan(labels, origin, u, slot->inward, kWidths * width + kPillar);
       for (const RowScan::Peak& peak : scan.peaks(min_contrast)) {
-        SlotMark mark = faintMark(*slot, from, origin + peak.at * u, peak, pixel);
-        const auto known = [&](const SlotMark& other) {
-          return !other.is_bar && !other.is_front_end && isSame(mark, other, u);
-        };
-        if (std::any_of(marks.begin(), marks.end(), known) ||
-            std::any_of(faint.begin(), faint.end(), known)) {
-          continue;
-        }
-        mark.side = side++;
-        faint.push_back(mark);
+        SlotMark mark = faintMark(from, origin + peak.at * u, peak, pixel);
+        mark.inward = slot->inward;
+        mark.row_width = width;
+        addUnknown(mark, u, marks, faint);
       }
     }
   }
   return faint;
+}
+
+std::vector<SlotMark> findLoneMarks(const BevLabels& labels,
+                                    const std::vector<const SlotCandidate*>& slots,
+                                    const std::vector<SlotMark>& marks, double min_contrast) {
+  constexpr double kLeastSeen = 0.8;  // m of the side that is seen
+  constexpr double kBegin = 1.6;      // m from it
+  constexpr double kNarrowest = 2.2;
+  constexpr double kWidest = 2.8;
+  std::vector<SlotMark> lone;
+  if (labels.slot_line.empty()) return lone;
+  for (const SlotMark& from : marks) {
+    if (from.is_bar || from.is_front_end || from.isFaint() || from.visible < kLeastSeen) continue;
+    for (const double sign : {-1.0, 1.0}) {
+      const Vector2d u = sign * entranceAlong(from);
+      const auto beside = [&](const SlotCandidate* slot) { return liesBeside(*slot, from, u); };
+      if (std::any_of(slots.begin(), slots.end(), beside)) continue;
+      const double widest = kWidest / std::max(0.3, std::abs(cross(u, from.inward)));
+      const Vector2d origin = from.p + kBegin * u;
+      const RowScan scan(labels, origin, u, from.inward, widest - kBegin + 0.6);
+      for (const RowScan::Peak& peak : scan.peaks(min_contrast)) {
+        const double width = kBegin + peak.at;
+        if (width < kNarrowest || width > widest) continue;
+        SlotMark mark = faintMark(from, origin + peak.at * u, peak, labels.geometry.metres_per_px);
+        mark.inward = from.inward;
+        mark.row_width = width;
+        mark.is_lone = true;
+        addUnknown(mark, u, marks, lone);
+      }
+    }
+  }
+  return lone;
 }
 
 }  // namespace parkade

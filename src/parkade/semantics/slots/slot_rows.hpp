@@ -19,4 +19,11 @@ std::vector<SlotMark> findFaintMarks(const BevLabels& labels,
                                      const std::vector<const SlotCandidate*>& slots,
                                      const std::vector<SlotMark>& marks, double min_contrast);
 
+/// Marks where lines too worn for labels run beside a side that is seen (0.8 m and more), as far
+/// from it as slots are usually wide (2.2 to 2.8 m), on a hand where no slot told lies. Slanted
+/// ones where a line meets the side at the entrance. They are lone (SlotMark).
+std::vector<SlotMark> findLoneMarks(const BevLabels& labels,
+                                    const std::vector<const SlotCandidate*>& slots,
+                                    const std::vector<SlotMark>& marks, double min_contrast);
+
 }  // namespace parkade

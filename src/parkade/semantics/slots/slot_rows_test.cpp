@@ -79,6 +79,31 @@ TEST(SlotRows, TellsNoneWithoutALineOfTheRowsWidth) {
   EXPECT_EQ(slotsOf(wornRow(row, across, 5.0)).size(), 1U);
 }
 
+// One side of a slot is painted freshly, the other too worn for a label, and no other slot is
+// there.
+TEST(SlotRows, AWornSideByItselfWillDoWhereTheEntranceShows) {
+  for (const SlotMarking marking : {SlotMarking::kT, SlotMarking::kOpen}) {
+    Row row;
+    row.count = 1;
+    row.marking = marking;
+    PaintedFloor paint;
+    row.paint(paint);
+    PaintedFloor floor;
+    floor.line(row.front(0), row.rear(0), kLine);
+    const Vector2d bar(0.3, 0.0);
+    if (marking == SlotMarking::kT) floor.line(row.front(0) - bar, row.front(0) + bar, kLine);
+    cv::Mat& evidence = floor.labels.slot_line;
+    evidence = cv::Mat(floor.labels.labels.size(), CV_8UC1, cv::Scalar(0.0));
+    evidence.setTo(255.0 - kEvidencePerLogOdds * 4.0, paint.labels.labels == kSlotLineLabel);
+    evidence.setTo(255.0, floor.labels.labels == kSlotLineLabel);
+    const std::vector<SlotObservation> slots = slotsOf(floor);
+    ASSERT_EQ(slots.size(), marking == SlotMarking::kT ? 1U : 0U);
+    if (slots.empty()) continue;
+    EXPECT_LT((slots[0].corners[0] - row.front(0)).norm(), 0.05);
+    EXPECT_LT((slots[0].corners[1] - row.front(1)).norm(), 0.08);
+  }
+}
+
 TEST(SlotRows, ACarOverALineHidesIt) {
   const Row row = threeSlots(SlotMarking::kOpen);
   PaintedFloor paint;
