@@ -189,7 +189,7 @@ class Scorer {
     const cv::Mat light = rescaled(grey, bev.geometry.metres_per_px).image;
     for (const SlotMark& mark : findSlotMarks(light, LabelProbe(*labels), lines.segments)) {
       if (mark.is_bar) continue;  // no line meets it in sight
-      if (!mark.across.isZero()) addTo(found.meetings, mark.p);
+      if (!mark.across.isZero() && !mark.is_front_end) addTo(found.meetings, mark.p);
       addTo(found.all, mark.p);
     }
     return found;
