@@ -103,7 +103,11 @@ std::optional<double> CompassScatter::add(double off_odometry) {
   const double usual = usual_sigma_ / kShared;
   const double scattered = std::max(0.0, squares - sum * sum / count);
   const double variance = (kPrior * usual * usual + scattered) / (kPrior + count - 1.0);
-  return std::max(usual_sigma_, kShared * std::sqrt(variance));
+  // Those of poor lines err together, by far more than the mean of so many would.
+  constexpr double kPoor = 0.05 * kDegree;
+  const double sigma = kShared * std::sqrt(variance);
+  const double more = std::max(0.0, sigma * sigma - usual_sigma_ * usual_sigma_);
+  return std::max(usual_sigma_, sigma * std::sqrt(1.0 + more / (kPoor * kPoor)));
 }
 
 }  // namespace parkade

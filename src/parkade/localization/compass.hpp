@@ -79,7 +79,8 @@ class Compass {
 };
 
 /// How much the headings that a compass reads err, told by how they differ from each other: over
-/// the last metres the odometry does not turn by as much as readings of worn lines scatter.
+/// the last metres the odometry does not turn by as much as readings of worn lines scatter. Such
+/// err together over tens of metres, and are told with much more (docs/math/fusion.md, Axes).
 class CompassScatter {
  public:
   /// usual_sigma: rad, the error of a reading where lines are good; none is told to be less.
