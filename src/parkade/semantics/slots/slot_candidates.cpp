@@ -94,9 +94,9 @@ class MarkPairing {
   }
 
   [[nodiscard]] static bool runSideBySide(const SlotMark& left, const SlotMark& right) {
-    // What is seen of a mark's direction: of a bar its own length.
+    // What is seen of a mark's direction: without a side the length of the line that is seen.
     const auto seen = [](const SlotMark& mark) {
-      return mark.is_bar || mark.is_front_end ? mark.across_length : mark.visible;
+      return mark.isSideless() ? mark.across_length : mark.visible;
     };
     const double shorter = std::min(seen(left), seen(right));
     return left.inward.dot(right.inward) > std::cos(allowedAngle(kSideBySide, shorter));

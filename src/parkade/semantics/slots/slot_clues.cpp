@@ -185,7 +185,7 @@ class SlotClueFinder {
     const Vector2d aside(-towards.y(), towards.x());
     double last = 0.0;
     for (double d = step; d < to_camera.norm() && d - last < kGap; d += step) {
-      for (double off = -kAside; off <= kAside; off += step) {
+      for (double off = -kAside; off <= kAside && last < d; off += step) {
         if (probe_.at(p + d * towards + off * aside) == SemanticClass::kPillar) last = d;
       }
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "parkade/semantics/slots/line_ends.hpp"
 
@@ -18,7 +19,6 @@ constexpr double kLeastMet = 0.25;   // m of side line to see, where another lin
 constexpr double kLeastOpen = 0.35;  // the same without
 constexpr double kLongestBar = 0.9;  // m
 constexpr double kSteepest = 0.42;   // sine of the least angle between lines that meet
-constexpr double kBack = 0.15;       // m from a line's end, from where its paint is followed on
 constexpr double kBeyond = 0.9;      // m in front of an entrance without its side going on
 
 struct Stroke {
@@ -132,19 +132,32 @@ class MarkFinder {
     return static_cast<double>(worn) / kSamples;
   }
 
+  // The corner at a line's end.
+  struct Corner {
+    Vector2d p;
+    double sigma;  // m, along the line
+  };
+  [[nodiscard]] std::optional<Corner> cornerAt(const Stroke& line, double sign) const {
+    constexpr double kBack = 0.15;  // m from the end, from where paint is followed on
+    const Vector2d outward = sign * line.along;
+    const Vector2d tip = sign > 0.0 ? line.end : line.begin;
+    const double back = std::min(kBack, 0.5 * line.length);
+    const auto end = ends_.from(tip - back * outward, outward, line.width);
+    if (!end) return std::nullopt;
+    // Lines end half their width beyond the corner.
+    return Corner{end->p - 0.5 * line.width * outward, std::hypot(end->sigma_px * pixel_, 0.01)};
+  }
+
   void openEnd(std::size_t i, double sign) {
     const Stroke& side = strokes_[i];
     const Vector2d outward = sign * side.along;
-    const Vector2d tip = sign > 0.0 ? side.end : side.begin;
-    const double back = std::min(kBack, 0.5 * side.length);
-    const auto end = ends_.from(tip - back * outward, outward, side.width);
-    if (!end) return;
+    const auto corner = cornerAt(side, sign);
+    if (!corner) return;
     SlotMark mark;
-    // Lines end half their width beyond the corner.
-    mark.p = end->p - 0.5 * side.width * outward;
+    mark.p = corner->p;
     mark.side = static_cast<int>(i);
     mark.width = side.width;
-    mark.sigma_along = std::hypot(end->sigma_px * pixel_, 0.01);
+    mark.sigma_along = corner->sigma;
     mark.sigma_aside = 0.3 * pixel_;
     for (SlotMark& met : marks_) {
       if (met.side != mark.side) continue;
@@ -186,18 +199,16 @@ class MarkFinder {
     constexpr double kApart = 0.5;     // m from another corner
     const Stroke& front = strokes_[i];
     if (!front.is_met || front.length < kShortest) return;
-    const Vector2d outward = sign * front.along;
-    const Vector2d tip = sign > 0.0 ? front.end : front.begin;
-    const auto end = ends_.from(tip - kBack * outward, outward, front.width);
-    if (!end) return;
+    const auto corner = cornerAt(front, sign);
+    if (!corner) return;
     SlotMark mark;
-    mark.p = end->p - 0.5 * front.width * outward;
+    mark.p = corner->p;
     mark.across = front.along;
     mark.across_length = front.length;
     mark.side = static_cast<int>(strokes_.size() + 2 * i) + (sign > 0.0 ? 1 : 0);
     mark.width = front.width;
     mark.sigma_along = 0.3 * pixel_;
-    mark.sigma_aside = std::hypot(end->sigma_px * pixel_, 0.01);
+    mark.sigma_aside = corner->sigma;
     mark.is_front_end = true;
     const std::vector<SlotMark> met = marksOn(front);
     const auto is_near = [&](const SlotMark& other) { return (other.p - mark.p).norm() < kApart; };

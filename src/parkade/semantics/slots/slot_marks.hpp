@@ -30,6 +30,8 @@ struct SlotMark {
   bool is_front_end = false;  ///< only the end of an entrance line is seen, no side line
 
   [[nodiscard]] bool isFaint() const { return row_width > 0.0; }
+  /// A line along the entrance is all that is seen.
+  [[nodiscard]] bool isSideless() const { return is_bar || is_front_end; }
 };
 
 /// Marks of all slot lines among the segments, both ways along each. The side line must end at its

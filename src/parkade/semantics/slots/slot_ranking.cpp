@@ -15,8 +15,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kSure = 1.0;  // log-odds of what speaks against others
-
 // Share of a's area that lies in b, from a grid of points.
 double shareInside(const std::array<Vector2d, 4>& a, const std::array<Vector2d, 4>& b) {
   constexpr int kSteps = 8;
@@ -60,10 +58,16 @@ class SlotRanking {
     }
   }
 
+  // Whether a candidate speaks against others.
+  [[nodiscard]] static bool isWitness(const SlotCandidate& c) {
+    constexpr double kSure = 1.0;  // log-odds
+    return c.score >= kSure && c.shape != SlotShape::kParallel;
+  }
+
   // What borders on a likelier perpendicular slot is hardly a parallel one, and the entrances of
   // slots that share a line lie in one line.
   [[nodiscard]] static double doubtBy(const SlotCandidate& c, const SlotCandidate& other) {
-    if (other.score < kSure || other.shape == SlotShape::kParallel) return 0.0;
+    if (!isWitness(other)) return 0.0;
     const bool share = other.right == c.left || other.left == c.right;
     if (c.shape == SlotShape::kParallel && share && other.score > c.score) return 3.0;
     if (other.score > c.score && liesAcross(c, other)) return 3.0;
@@ -85,7 +89,7 @@ class SlotRanking {
     bool is_wider = false;
     bool is_bare = true;
     for (const SlotCandidate& other : candidates_) {
-      if (other.score < kSure || other.shape == SlotShape::kParallel) continue;
+      if (!isWitness(other)) continue;
       if (std::abs(other.inward.dot(c.inward)) < kParallelSides) continue;
       if (c.width() - other.width() <= kWider) continue;
       is_wider = true;

@@ -64,27 +64,25 @@ TEST(SlotRanking, AWideSlotBetweenOthersIsOneWhereItsFrontIsPainted) {
   EXPECT_NEAR((slot->corners[1] - slot->corners[0]).norm(), wide.width, 0.05);
 }
 
-// What glare and wear leave of a front, or a scratch, runs anywhere.
-TEST(SlotRanking, AShortPieceOfLineAtACornerDoesNotDenyASlot) {
+// Whether an open slot is told that has one more line, from and to beside its left corner.
+bool isToldWithLine(const Vector2d& from, const Vector2d& to) {
   Row row;
   row.count = 1;
   row.marking = SlotMarking::kOpen;
   PaintedFloor floor;
   row.paint(floor);
-  floor.line(row.front(0), row.front(0) + Vector2d(-0.25, 0.25), kLine);
-  EXPECT_NE(slotAt(slotsOf(floor), row.front(0)), nullptr);
+  floor.line(row.front(0) + from, row.front(0) + to, kLine);
+  return slotAt(slotsOf(floor), row.front(0)) != nullptr;
+}
+
+// What glare and wear leave of a front, or a scratch, runs anywhere.
+TEST(SlotRanking, AShortPieceOfLineAtACornerDoesNotDenyASlot) {
+  EXPECT_TRUE(isToldWithLine({0.0, 0.0}, {-0.25, 0.25}));
 }
 
 // Of a T, smeared so that it looks turned.
 TEST(SlotRanking, ATurnedBarDoesNotDenyASlot) {
-  Row row;
-  row.count = 1;
-  row.marking = SlotMarking::kOpen;
-  PaintedFloor floor;
-  row.paint(floor);
-  const Vector2d half(0.32, 0.12);
-  floor.line(row.front(0) - half, row.front(0) + half, kLine);
-  EXPECT_NE(slotAt(slotsOf(floor), row.front(0)), nullptr);
+  EXPECT_TRUE(isToldWithLine({-0.32, -0.12}, {0.32, 0.12}));
 }
 
 // A car hides where narrower slots, as those beside, would have a line. A front with a hole may be

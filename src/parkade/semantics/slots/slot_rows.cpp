@@ -171,10 +171,10 @@ SlotMark faintMark(const SlotMark& from, const Vector2d& p, const RowScan::Peak&
 }
 
 // Of a side line of its own, unless that is among the marks or the others found.
-void addUnknown(SlotMark& mark, const Vector2d& u, const std::vector<SlotMark>& marks,
+void addUnknown(SlotMark mark, const Vector2d& u, const std::vector<SlotMark>& marks,
                 std::vector<SlotMark>& found) {
   const auto known = [&](const SlotMark& other) {
-    return !other.is_bar && !other.is_front_end && isSame(mark, other, u);
+    return !other.isSideless() && isSame(mark, other, u);
   };
   if (std::any_of(marks.begin(), marks.end(), known) ||
       std::any_of(found.begin(), found.end(), known)) {
@@ -226,7 +226,7 @@ std::vector<SlotMark> findLoneMarks(const BevLabels& labels,
   std::vector<SlotMark> lone;
   if (labels.slot_line.empty()) return lone;
   for (const SlotMark& from : marks) {
-    if (from.is_bar || from.is_front_end || from.isFaint() || from.visible < kLeastSeen) continue;
+    if (from.isSideless() || from.isFaint() || from.visible < kLeastSeen) continue;
     for (const double sign : {-1.0, 1.0}) {
       const Vector2d u = sign * entranceAlong(from);
       const auto beside = [&](const SlotCandidate* slot) { return liesBeside(*slot, from, u); };
