@@ -8,11 +8,11 @@
 #include <future>
 #include <opencv2/core/utility.hpp>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include "parkade/core/check.hpp"
 #include "parkade/pipeline/frame_packets.hpp"
+#include "parkade/pipeline/pace.hpp"
 #include "parkade/pipeline/semantic_queue.hpp"
 #include "parkade/pipeline/thread_pool.hpp"
 #include "parkade/tracking/overlap.hpp"
@@ -74,7 +74,6 @@ class MappingRun::Impl {
   void offerPictures(Estimation& work, const PoseEstimate& odometry_pose);
   MotionPrior predict(const FramePacket& packet);
   void summarise(Clock::time_point begin);
-  Clock::time_point awaitDue(TimeNs t_ns);
 
   VioEstimator estimator_;
   RigErrorOnWay rig_error_;
@@ -91,14 +90,9 @@ class MappingRun::Impl {
   StageClock latency_clock_{"latency"};
   BusyTime busy_;
   int semantics_delay_ = 0;
-  double pace_ = 0.0;
+  Pace pace_;
   bool live_ = false;
-  struct PaceStart {
-    Clock::time_point at;
-    TimeNs t_ns = 0;
-  };
-  std::optional<PaceStart> pace_start_;  // of the first frame set
-  ThreadPool pool_;                      // last: the pools' threads use what is above
+  ThreadPool pool_;  // last: the pools' threads use what is above
 };
 
 MotionPrior MappingRun::Impl::predict(const FramePacket& packet) {
@@ -218,24 +212,11 @@ void MappingRun::Impl::finishEstimation() {
   running_.reset();
 }
 
-// When a frame set of this stamp arrives at the pace set: now, or when it is due, which may be past
-// where the run lags behind.
-Clock::time_point MappingRun::Impl::awaitDue(TimeNs t_ns) {
-  const Clock::time_point now = Clock::now();
-  if (!(pace_ > 0.0)) return now;
-  if (!pace_start_) pace_start_ = PaceStart{now, t_ns};
-  const auto due = pace_start_->at +
-                   std::chrono::duration_cast<Clock::duration>(
-                       std::chrono::duration<double>(toSeconds(t_ns - pace_start_->t_ns) / pace_));
-  std::this_thread::sleep_until(due);
-  return due;
-}
-
 Status MappingRun::Impl::run(SensorSource& source, const ProgressCallback& progress) {
   const Clock::time_point begin = Clock::now();
   const SensorSourceInfo& info = source.info();
   FramePackets packets(
-      source, [this](TimeNs t_ns) { return awaitDue(t_ns); }, live_);
+      source, [this](TimeNs t_ns) { return pace_.awaitDue(t_ns); }, live_);
   Status status;
   while (true) {
     Result<std::optional<FramePacket>> packet = packets.next();

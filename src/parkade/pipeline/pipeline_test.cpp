@@ -3,80 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <deque>
 #include <opencv2/core.hpp>
-#include <stdexcept>
-#include <thread>
 
 #include "parkade/core/random.hpp"
 #include "parkade/pipeline/mapping_run.hpp"
-#include "parkade/pipeline/stage_clock.hpp"
-#include "parkade/pipeline/thread_pool.hpp"
 
 namespace parkade {
 namespace {
-
-TEST(ThreadPool, SharesOutEveryNumberOnce) {
-  for (const int threads : {0, 1, 3}) {
-    ThreadPool pool(threads);
-    std::vector<int> done(100, 0);
-    pool.parallelFor(100, [&](int i) { ++done[static_cast<std::size_t>(i)]; });
-    EXPECT_EQ(done, std::vector<int>(100, 1)) << threads << " threads";
-  }
-}
-
-TEST(ThreadPool, LoopGoesOnBesideWorkThatTakesItsTime) {
-  ThreadPool pool(1);
-  std::atomic<bool> release{false};
-  std::future<void> slow = pool.submit([&] {
-    while (!release) std::this_thread::yield();
-  });
-  int sum = 0;  // the only thread is busy: the caller does it all
-  pool.parallelFor(10, [&](int i) { sum += i; });
-  EXPECT_EQ(sum, 45);
-  release = true;
-  slow.get();
-}
-
-TEST(ThreadPool, HandsExceptionsToTheCaller) {
-  ThreadPool pool(2);
-  EXPECT_THROW(pool.parallelFor(8,
-                                [](int i) {
-                                  if (i == 5) throw std::runtime_error("five");
-                                }),
-               std::runtime_error);
-  EXPECT_THROW(pool.submit([] { throw std::runtime_error("no"); }).get(), std::runtime_error);
-}
-
-TEST(StageClock, GivesMeanPercentilesAndMaximum) {
-  StageClock clock("stage");
-  for (int i = 1; i <= 1000; ++i) clock.add(i);
-  const StageTiming timing = clock.timing();
-  EXPECT_DOUBLE_EQ(timing.mean_ms, 500.5);
-  EXPECT_NEAR(timing.p50_ms, 500.0, 10.0);
-  EXPECT_NEAR(timing.p95_ms, 950.0, 20.0);
-  EXPECT_DOUBLE_EQ(timing.max_ms, 1000.0);
-  EXPECT_EQ(timing.count, 1000);
-  EXPECT_EQ(StageClock("none").timing().count, 0);
-}
-
-TEST(BusyTime, CountsWhatOverlapsOnce) {
-  BusyTime busy;
-  const BusyTime::Clock::time_point start = BusyTime::Clock::now();
-  const auto at = [&](int ms) { return start + std::chrono::milliseconds(ms); };
-  busy.add(at(0), at(100));
-  busy.add(at(50), at(80));
-  busy.add(at(90), at(150));
-  busy.add(at(200), at(210));
-  EXPECT_NEAR(busy.seconds(), 0.160, 1e-9);
-  // Of a stage that ends long after it began, what others have not counted.
-  BusyTime slow;
-  slow.add(at(140), at(205));
-  busy.add(slow);
-  EXPECT_NEAR(busy.seconds(), 0.210, 1e-9);
-}
 
 // A rig of one camera in a box of random dots, driven by hand: images and exact IMU readings.
 class DotSource : public SensorSource {
