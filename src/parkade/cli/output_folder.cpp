@@ -23,11 +23,20 @@ constexpr const char* kSubfolders[] = {"map", "pictures"};
 
 // All that a run writes but for its configuration.
 std::vector<std::string> resultFiles() {
-  std::vector<std::string> files = {
-      "map.db",         "trajectory.tum", "trajectory_vio.tum", "trajectory_final.tum",
-      "covariance.csv", "health.csv",     "timing.json",        "metrics.json",
-      "report.html",    "rig.yaml",       "map/map.geojson",    "map/map.osm",
-      "map/map.png"};
+  std::vector<std::string> files = {"map.db",
+                                    "map.db-journal",
+                                    "trajectory.tum",
+                                    "trajectory_vio.tum",
+                                    "trajectory_final.tum",
+                                    "covariance.csv",
+                                    "health.csv",
+                                    "timing.json",
+                                    "metrics.json",
+                                    "report.html",
+                                    "rig.yaml",
+                                    "map/map.geojson",
+                                    "map/map.osm",
+                                    "map/map.png"};
   for (const std::string_view layer : kGridLayerNames) {
     for (const char* ending : {".pgm", ".yaml"}) {
       files.push_back("map/" + std::string(layer) + ending);

@@ -15,6 +15,9 @@ DeadReckoning::DeadReckoning(const SE3& T_vehicle_imu, const DeadReckoningOption
 void DeadReckoning::addImu(const ImuSample& sample) {
   if (!sample.gyro.allFinite() || !sample.accel.allFinite()) return;
   if (!imu_.empty() && sample.t_ns <= imu_.back().t_ns) return;
+  // Nobody knows what the car did before its wheels are heard.
+  constexpr TimeNs kWait = kNsPerSecond;
+  if (speeds_.empty() && !imu_.empty() && sample.t_ns - imu_.front().t_ns > kWait) imu_.pop_front();
   imu_.push_back(sample);
 }
 
@@ -132,7 +135,9 @@ PoseEstimate DeadReckoning::poseAt(TimeNs t_ns) {
     return e;
   }
   if (!started_) {
-    t_ns_ = origin_t_ns_ = bias_t_ns_ = imu_.front().t_ns;
+    t_ns_ = std::max(imu_.front().t_ns, speeds_.front().t_ns);
+    while (imu_.size() > 1 && imu_[1].t_ns <= t_ns_) imu_.pop_front();
+    origin_t_ns_ = bias_t_ns_ = t_ns_;
     const Eigen::Vector3d accel = T_vehicle_imu_.rotation() * imu_.front().accel;
     if (accel.norm() > 1.0) up_ = accel.normalized();
     started_ = true;

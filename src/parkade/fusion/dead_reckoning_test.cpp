@@ -104,6 +104,32 @@ TEST(DeadReckoning, SaysWhatIsMissing) {
   EXPECT_THAT(reckoning.poseAt(20).reason, testing::HasSubstr("wheel"));
 }
 
+TEST(DeadReckoning, WhatHappenedBeforeTheWheelsWereHeardIsNoStand) {
+  DeadReckoning reckoning(SE3(), {});
+  PoseEstimate pose;
+  // A curve of 20 s; then the wheels are heard, stand first, and a straight follows.
+  for (int k = 0; k <= 200 * 40; ++k) {
+    const double t = k / 200.0;
+    const double speed = t < 22.0 ? 0.0 : 2.0;
+    ImuSample imu;
+    imu.t_ns = fromSeconds(t) + 1;
+    imu.gyro = {0.0, 0.0, t < 20.0 ? 0.2 : 0.0};
+    imu.accel = {0.0, t < 20.0 ? 0.4 : 0.0, 9.81};
+    reckoning.addImu(imu);
+    if (t >= 20.0 && k % 2 == 0) {
+      WheelSample wheel;
+      wheel.t_ns = imu.t_ns;
+      wheel.rear_left_mps = wheel.rear_right_mps = speed;
+      reckoning.addWheel(wheel);
+    }
+    if (k % 20 == 0) pose = reckoning.poseAt(imu.t_ns);
+  }
+  ASSERT_EQ(pose.health, Health::kTracking);
+  EXPECT_NEAR(pose.bias_gyro.norm(), 0.0, 1e-6);
+  EXPECT_NEAR(SE2::fromSE3(pose.T_odom_vehicle).angle(), 0.0, 1e-4);
+  EXPECT_NEAR(pose.T_odom_vehicle.translation().x(), 36.0, 0.1);
+}
+
 // The covariance of (x, y, yaw).
 Eigen::Vector3d sigmasOf(const PoseEstimate& e) {
   return {std::sqrt(e.covariance(0, 0)), std::sqrt(e.covariance(1, 1)),

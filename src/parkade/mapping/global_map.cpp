@@ -93,6 +93,7 @@ struct GlobalMap::Impl {
              bool new_view, double since_last_s);
   [[nodiscard]] bool movedFrom(const std::optional<SE2>& before, const SE2& T_map_vehicle) const;
   void rebuildSome(std::size_t count);
+  void keep(PackedPicture picture);
   [[nodiscard]] const SE2& anchorOf(const std::unordered_map<std::int64_t, SE2>& poses,
                                     std::int64_t anchor) const;
 
@@ -109,6 +110,7 @@ struct GlobalMap::Impl {
   std::optional<SE2> last_pose;  // in the map, of the last picture entered
   std::optional<SE2> last_view;  // and of the last that entered all layers
   TimeNs last_t_ns = 0;
+  std::size_t standing = 0;  // newest pictures that show nothing but what moves
 };
 
 bool GlobalMap::Impl::movedFrom(const std::optional<SE2>& before, const SE2& T_map_vehicle) const {
@@ -170,6 +172,19 @@ void GlobalMap::Impl::rebuildSome(std::size_t count) {
   next_poses.clear();
 }
 
+// Of a stand's pictures, which tell what moved alone, the newest are enough: a car may stand for
+// hours.
+void GlobalMap::Impl::keep(PackedPicture picture) {
+  constexpr std::size_t kOfAStand = 5;
+  standing = picture.new_view ? 0 : standing + 1;
+  pictures.push_back(std::move(picture));
+  if (standing <= kOfAStand) return;
+  const std::size_t oldest = pictures.size() - standing;
+  pictures.erase(pictures.begin() + static_cast<std::ptrdiff_t>(oldest));
+  --standing;
+  if (next_grid && next_picture > oldest) --next_picture;
+}
+
 GlobalMap::GlobalMap(const GlobalMapOptions& options) : impl_(std::make_unique<Impl>(options)) {}
 GlobalMap::~GlobalMap() = default;
 GlobalMap::GlobalMap(GlobalMap&&) noexcept = default;
@@ -192,7 +207,7 @@ bool GlobalMap::update(const PackedLabels& labels, TimeNs t_ns, std::int64_t anc
   // One that creeps sees new ground as well.
   picture.new_view = new_view || m.movedFrom(m.last_view, T_map_vehicle);
   if (picture.new_view) m.last_view = T_map_vehicle;
-  m.pictures.push_back(std::move(picture));
+  m.keep(std::move(picture));
   // The grid in use keeps the pose that its other pictures of this anchor have.
   const SE2& T_map_anchor =
       m.entered.try_emplace(anchor, m.anchorOf(m.anchors, anchor)).first->second;

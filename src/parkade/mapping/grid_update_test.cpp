@@ -277,6 +277,38 @@ TEST(GlobalMap, StandingCarEntersOnePicturePerSecond) {
   EXPECT_LT(map.pictureBytes(), 6U * 30000U);
 }
 
+TEST(GlobalMap, AStandOfHoursKeepsAFewPictures) {
+  const PlanObserver observer(makePlan(1, 40.0, 0.5, 6), {});
+  Random random(1);
+  const SE2 pose(0.0, {12.0, 0.0});
+  const PackedLabels labels = packLabels(observer.observe(0, pose, random, true));
+  GlobalMapOptions options;
+  options.rebuild_per_frame = 2;
+  GlobalMap map(options);
+  map.setAnchor(0, SE2());
+  for (int k = 0; k <= 200; ++k) map.update(labels, 1'000'000'000LL * k, 0, pose, k == 0);
+  EXPECT_EQ(map.pictures(), 6);
+  const SE2 further(0.0, {14.0, 0.0});
+  for (int k = 201; k <= 203; ++k) map.update(labels, 1'000'000'000LL * k, 0, further, k == 201);
+  EXPECT_EQ(map.pictures(), 9);
+  // Rebuilt while it stands, it holds what it held.
+  const auto cells = [&] {
+    std::size_t known = 0;
+    map.grid().forEachKnown(GridLayer::kParkingLines,
+                            [&](const auto&, const GridCell&) { ++known; });
+    return known;
+  };
+  const std::size_t before = cells();
+  map.setAnchor(0, SE2(0.0, {0.5, 0.0}));
+  EXPECT_TRUE(map.rebuilding());
+  for (int k = 204; map.rebuilding() && k < 300; ++k) {
+    map.update(labels, 1'000'000'000LL * k, 0, further, false);
+  }
+  EXPECT_FALSE(map.rebuilding());
+  EXPECT_GT(before, 100U);
+  EXPECT_NEAR(static_cast<double>(cells()), static_cast<double>(before), 0.05 * before);
+}
+
 // Prints the time only: whatever else a machine does must not fail a test.
 TEST(GridUpdate, TimeOfAPictureIsTold) {
   const PlanObserver observer(makePlan(1, 60.0, 0.5, 5), {});

@@ -148,12 +148,16 @@ TEST(SlotRegistry, AvailabilityFollowsTheWorldAndFades) {
     }
   };
   look(20);
+  const std::size_t told = registry.slots(t_ns).size();
+  ASSERT_GT(told, 3U);
   for (const MapSlot& slot : registry.slots(t_ns)) EXPECT_GT(slot.probability_free, 0.9);
   for (PlanSlot& slot : plan.slots) slot.occupied = true;
   look(20);
   for (const MapSlot& slot : registry.slots(t_ns)) EXPECT_LT(slot.probability_free, 0.1);
+  EXPECT_EQ(registry.slots(t_ns).size(), told);
   const TimeNs later = t_ns + 3600LL * kNsPerSecond;
   for (const MapSlot& slot : registry.slots(later)) EXPECT_NEAR(slot.probability_free, 0.5, 0.02);
+  EXPECT_EQ(registry.slots(later).size(), told);
 }
 
 TEST(SlotRegistry, WhatIsSeenAcrossNeighboursSaysLittleOnceTheEntranceWasSeenOver) {
@@ -173,6 +177,7 @@ TEST(SlotRegistry, WhatIsSeenAcrossNeighboursSaysLittleOnceTheEntranceWasSeenOve
   SlotRegistry passed({});
   look(passed, 10, false, 1.0);
   look(passed, 20, true, 0.0);  // another car's smear
+  ASSERT_GT(passed.slots(t_ns).size(), 3U);
   for (const MapSlot& slot : passed.slots(t_ns)) EXPECT_GT(slot.probability_free, 0.9);
   look(passed, 10, true, 1.0);  // and a car that came
   for (const MapSlot& slot : passed.slots(t_ns)) EXPECT_LT(slot.probability_free, 0.1);
@@ -248,6 +253,36 @@ TEST(SlotRegistry, OfTwoReadingsOfAPlaceTheOneSeenMoreOftenIsTold) {
   const std::vector<MapSlot> slots = registry.slots(40 * kTick);
   ASSERT_EQ(slots.size(), 1U);
   EXPECT_NEAR(slots[0].corners[1].x(), 4.5, 0.02);
+}
+
+TEST(SlotRegistry, WhereTheCarDroveUnheardNobodyKnows) {
+  SlotObservation o;
+  o.corners = {Eigen::Vector2d(2, 2), Eigen::Vector2d(4.5, 2), Eigen::Vector2d(4.5, 7),
+               Eigen::Vector2d(2, 7)};
+  o.entrance_covariance = 1e-3 * Eigen::Matrix4d::Identity();
+  o.confidence = 0.9;
+  // Along the aisle, then around a corner without a picture for so many metres' chord.
+  const auto told = [&](const std::vector<SE2>& way) {
+    SlotRegistry registry({});
+    TimeNs t_ns = 0;
+    for (const SE2& pose : way) {
+      SlotObservation seen = o;
+      for (Eigen::Vector2d& p : seen.corners) p = pose.inverse() * p;
+      registry.update({seen}, t_ns += kTick, pose, 0);
+    }
+    return registry.slots(t_ns).size();
+  };
+  std::vector<SE2> aisle;
+  for (int k = 0; k <= 20; ++k) aisle.emplace_back(0.0, Eigen::Vector2d(-3.0 + 0.2 * k, 0.0));
+  EXPECT_EQ(told(aisle), 1U);
+  std::vector<SE2> gap = aisle;
+  gap.emplace_back(M_PI_2, Eigen::Vector2d(7.0, 9.0));  // the chord crosses the slot
+  EXPECT_EQ(told(gap), 1U);
+  std::vector<SE2> through = aisle;
+  for (int k = 1; k <= 40; ++k) {
+    through.emplace_back(0.98, Eigen::Vector2d(1.0 + 6.0 * k / 40, 9.0 * k / 40));
+  }
+  EXPECT_EQ(told(through), 0U);
 }
 
 TEST(SlotRegistry, NoSlotWhereTheCarDroveThroughOrDriversMarksLie) {

@@ -264,11 +264,15 @@ TEST(FusedMapper, GoesOnWhereTheOdometryStartsAgain) {
 TEST(FusedMapper, SameCallsGiveTheSameBytes) {
   DriveOptions options;
   options.laps = 1;
+  options.labels = true;
   const Plan plan = makePlan(2, 60.0, 0.6, 5);
   const DriveResult a = drive(plan, options, 5);
   const DriveResult b = drive(plan, options, 5);
   EXPECT_EQ(a.fused_rmse, b.fused_rmse);
+  EXPECT_GT(a.map.slots.size(), 40U);
+  EXPECT_FALSE(a.map.grid.tiles(GridLayer::kParkingLines).empty());
   EXPECT_TRUE(a.map.slots == b.map.slots);
+  EXPECT_TRUE(a.map.grid == b.map.grid);
   EXPECT_TRUE(a.map.objects == b.map.objects);
 }
 

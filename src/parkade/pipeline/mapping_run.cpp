@@ -69,6 +69,7 @@ class MappingRun::Impl {
   void process(FramePacket packet);
   TrackSet track(const FramePacket& packet);
   void finishEstimation();
+  void settle();
   void estimate(Estimation& work);
   PoseEstimate odometryOf(const Estimation& work);
   void offerPictures(Estimation& work, const PoseEstimate& odometry_pose);
@@ -212,7 +213,20 @@ void MappingRun::Impl::finishEstimation() {
   running_.reset();
 }
 
+// Waits for what other threads are at, and forgets it: they must not use the caller's observers
+// after an exception took the caller out of the run.
+void MappingRun::Impl::settle() {
+  if (running_ != nullptr && running_->done.valid()) running_->done.wait();
+  running_.reset();
+  if (semantics != nullptr) semantics->abandon();
+}
+
 Status MappingRun::Impl::run(SensorSource& source, const ProgressCallback& progress) {
+  struct Settling {
+    Impl& run;
+    ~Settling() { run.settle(); }
+  };
+  const Settling at_the_end{*this};
   const Clock::time_point begin = Clock::now();
   const SensorSourceInfo& info = source.info();
   FramePackets packets(

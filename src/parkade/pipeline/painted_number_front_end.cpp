@@ -132,16 +132,20 @@ struct PaintedNumberFrontEnd::Impl {
   /// A painted speed limit by all its readings.
   struct Limit {
     Eigen::Vector3d p_odom;
-    std::optional<Eigen::Vector3d> read_from = std::nullopt;  ///< the car's place
+    std::optional<Eigen::Vector3d> read_from = std::nullopt;   ///< the car's place
+    std::optional<Eigen::Vector3d> tried_from = std::nullopt;  ///< the same, whatever it told
     int readings = 0;
+    int tries = 0;
     TextEvidence text = {};
   };
   std::vector<Limit> limits = {};
   std::vector<std::string> limit_values = {};
   Limit& limitAt(const Eigen::Vector3d& p_odom);
-  Result<std::vector<TextReading>> readTurned(std::size_t object, const FrameSet& frames,
-                                              const BevViews& views, const SE3& T_level_vehicle,
-                                              const SemanticFrame& frame);
+  Result<std::optional<std::vector<TextReading>>> readTurned(std::size_t object,
+                                                             const FrameSet& frames,
+                                                             const BevViews& views,
+                                                             const SE3& T_level_vehicle,
+                                                             const SemanticFrame& frame);
   Status readLimits(const FrameSet& frames, const BevViews& views, const PoseEstimate& odometry,
                     const SE3& T_level_vehicle, SemanticFrame& frame);
 };
@@ -210,12 +214,13 @@ PaintedNumberFrontEnd::Impl::Limit& PaintedNumberFrontEnd::Impl::limitAt(
   return limits.back();
 }
 
-// A limit may face any way: read at many turns, that in which it is surest counts.
-Result<std::vector<TextReading>> PaintedNumberFrontEnd::Impl::readTurned(
+// A limit may face any way: read at many turns, that in which it is surest counts. Nothing where no
+// camera sees it well enough.
+Result<std::optional<std::vector<TextReading>>> PaintedNumberFrontEnd::Impl::readTurned(
     std::size_t object, const FrameSet& frames, const BevViews& views, const SE3& T_level_vehicle,
     const SemanticFrame& frame) {
   constexpr int kTurns = 12;
-  std::vector<TextReading> surest;
+  std::optional<std::vector<TextReading>> surest;
   for (int k = 0; k < kTurns; ++k) {
     const double angle = 2.0 * M_PI * k / kTurns;
     const auto limit = findPaintedLimit(frame, object, {std::cos(angle), std::sin(angle)});
@@ -223,9 +228,11 @@ Result<std::vector<TextReading>> PaintedNumberFrontEnd::Impl::readTurned(
     const std::vector<Seen> seen = bestSeen({*limit}, frames, views, frame, T_level_vehicle);
     if (seen.empty()) break;
     auto readings = reader.read(straighten(seen.front(), frames), options.letters);
-    if (!readings) return readings;
+    if (!readings) return readings.error();
     keepTexts(limit_values, *readings);
-    if (certaintyOf(*readings) > certaintyOf(surest)) surest = std::move(readings).value();
+    if (!surest || certaintyOf(*readings) > certaintyOf(*surest)) {
+      surest = std::move(readings).value();
+    }
   }
   return surest;
 }
@@ -234,6 +241,7 @@ Status PaintedNumberFrontEnd::Impl::readLimits(const FrameSet& frames, const Bev
                                                const PoseEstimate& odometry,
                                                const SE3& T_level_vehicle, SemanticFrame& frame) {
   constexpr int kReadings = 12;   // of one limit are enough
+  constexpr int kTries = 60;      // and so are those that tell nothing
   constexpr double kKnown = 0.9;  // probability
   const SE3 T_odom_level = odometry.T_odom_vehicle * T_level_vehicle.inverse();
   for (std::size_t i = 0; i < frame.objects.size(); ++i) {
@@ -241,15 +249,23 @@ Status PaintedNumberFrontEnd::Impl::readLimits(const FrameSet& frames, const Bev
     if (object.semantic_class != SemanticClass::kSpeedLimitPaint) continue;
     Limit& limit = limitAt(T_odom_level * object.position);
     const Eigen::Vector3d place = odometry.T_odom_vehicle.translation();
-    const bool moved =
-        !limit.read_from || (place - *limit.read_from).norm() >= 2.0 * options.distance_m;
-    if (moved && limit.readings < kReadings) {
+    const auto moved = [&](const std::optional<Eigen::Vector3d>& from, double distance) {
+      return !from || (place - *from).norm() >= distance;
+    };
+    // A worn one, or what is none, must not cost twelve looks in every picture.
+    if (limit.readings < kReadings && limit.tries < kTries &&
+        moved(limit.read_from, 2.0 * options.distance_m) &&
+        moved(limit.tried_from, options.distance_m)) {
       auto readings = readTurned(i, frames, views, T_level_vehicle, frame);
       if (!readings) return readings.error();
-      if (certaintyOf(*readings) >= kLikely) {
-        limit.read_from = place;
-        ++limit.readings;
-        limit.text.add(*readings);
+      if (*readings) {
+        limit.tried_from = place;
+        ++limit.tries;
+        if (certaintyOf(**readings) >= kLikely) {
+          limit.read_from = place;
+          ++limit.readings;
+          limit.text.add(**readings);
+        }
       }
     }
     const TextReading best = limit.text.best();

@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <deque>
 #include <opencv2/core.hpp>
+#include <stdexcept>
+#include <thread>
 
 #include "parkade/core/random.hpp"
 #include "parkade/pipeline/mapping_run.hpp"
@@ -275,6 +278,40 @@ TEST(MappingRun, KeepsWhatItHasWhenTheSourceFails) {
   EXPECT_EQ(status.error().message, "data.csv:7: the disk is gone");
   EXPECT_GT((*run)->summary().frame_sets, 15);
   EXPECT_GT((*run)->trajectory().size(), 5U);
+}
+
+TEST(MappingRun, NothingUsesAnObserverAfterAnExceptionEndedTheRun) {
+  class Slow : public Onlooker {
+   public:
+    explicit Slow(std::atomic<int>& running) : running_(running) {}
+    void onTracks(const TracksEvent&) override {
+      if (++tracks_ > 12) throw std::runtime_error("the observer gives up");
+    }
+    void onPose(const PoseEvent&) override { work(); }
+    void onFeatures(const FeaturesEvent&) override { work(); }
+
+   private:
+    void work() {
+      ++running_;
+      std::this_thread::sleep_for(std::chrono::milliseconds(60));
+      --running_;
+    }
+    std::atomic<int>& running_;
+    int tracks_ = 0;
+  };
+  DotSource source;
+  PipelineOptions options;
+  options.semantics.distance_m = 0.0;  // every picture is due
+  auto run = MappingRun::create(source.rig, options, 2, RunMethod::kFused);
+  ASSERT_TRUE(run.ok()) << run.error().message;
+  std::atomic<int> running{0};
+  Slow observer(running);
+  (*run)->addObserver(&observer);
+  EXPECT_THROW((void)(*run)->run(source), std::runtime_error);
+  for (int k = 0; k < 40; ++k) {
+    EXPECT_EQ(running, 0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
 }
 
 TEST(MappingRun, RefusesAMaskThatIsMissing) {

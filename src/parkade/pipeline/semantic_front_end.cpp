@@ -73,6 +73,19 @@ struct SemanticFrontEnd::Impl {
     return *sight;
   }
 
+  // Sight lines begin where cameras sit, which their labels' edges do not tell to a centimetre.
+  void renewSights() {
+    constexpr double kStep = 5e-3;  // m
+    bool moved = false;
+    for (std::size_t c = 0; c < cameras.size(); ++c) {
+      const Eigen::Vector3d& before = rig.cameras[c].T_vehicle_cam.translation();
+      moved = moved || (cameras[c].translation() - before).norm() >= kStep;
+    }
+    if (!moved) return;
+    for (std::size_t c = 0; c < cameras.size(); ++c) rig.cameras[c].T_vehicle_cam = cameras[c];
+    sights.clear();
+  }
+
   struct View {
     GroundPlaneEstimate floor;
     PoseEstimate now;
@@ -236,6 +249,7 @@ void SemanticFrontEnd::placeCameras(const std::vector<SE3>& T_vehicle_cam) {
     if (m.zone_markers != nullptr) m.zone_markers->moveCamera(camera, now);
     if (m.numbers != nullptr) m.numbers->moveCamera(camera, now);
   }
+  m.renewSights();
 }
 
 Result<SemanticFrame> SemanticFrontEnd::look(const FrameSet& frames, ThreadPool& beside) {

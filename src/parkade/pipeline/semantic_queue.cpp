@@ -106,6 +106,11 @@ void SemanticQueue::finish() {
   while (!looks_.empty()) enterFirst();
 }
 
+void SemanticQueue::abandon() noexcept {
+  for (const std::unique_ptr<Look>& look : looks_) look->done.wait();
+  looks_.clear();
+}
+
 std::vector<StageTiming> SemanticQueue::timings() const {
   std::vector<StageTiming> stages = front_end_->timings();
   stages.push_back(fuse_clock_.timing());

@@ -48,6 +48,8 @@ class SemanticQueue {
   void take(FrameSet frames, int number, const SE3& T_odom_vehicle, std::vector<SE3> cameras);
   /// Waits for all that is on its way and enters it.
   void finish();
+  /// Waits for all that is on its way, and drops it.
+  void abandon() noexcept;
 
   /// The first failure to look at a picture, by now.
   [[nodiscard]] const Status& status() const { return status_; }

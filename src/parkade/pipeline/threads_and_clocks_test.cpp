@@ -91,7 +91,8 @@ TEST(Pace, WithoutAPaceAllIsDueNow) {
   Pace pace(0.0);
   const Pace::Clock::time_point before = Pace::Clock::now();
   EXPECT_GE(pace.awaitDue(0), before);
-  EXPECT_LE(pace.awaitDue(fromSeconds(3600.0)), Pace::Clock::now());
+  const Pace::Clock::time_point due = pace.awaitDue(fromSeconds(3600.0));
+  EXPECT_LE(due, Pace::Clock::now());
 }
 
 }  // namespace

@@ -160,7 +160,7 @@ class ObjectRegistry {
   ObjectRegistryOptions options_;
   std::vector<Track> tracks_;
   std::deque<Look> looks_;  ///< the latest, oldest first
-  DrivenWay way_;
+  DrivenWay way_{1.0};
   std::int64_t next_id_ = 1;
   bool sighted_ = false;  ///< labels were given
   bool viewed_ = false;   ///< views were given

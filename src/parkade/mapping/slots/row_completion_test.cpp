@@ -300,6 +300,7 @@ TEST(RowCompletion, MovesAnEntranceToItsRow) {
   garage.told[4].corners[2].y() += 0.5;
   garage.told[4].corners[3].y() += 0.5;
   for (const MapSlot& slot : garage.complete().added) EXPECT_EQ(slot.observations, 0);
+  EXPECT_TRUE(garage.complete().replaced.empty());
 }
 
 TEST(RowCompletion, NothingToldGivesNothing) {

@@ -35,11 +35,11 @@ bool isForDrivers(SemanticClass c) {
          c == SemanticClass::kSpeedBump;
 }
 
-bool drivenThrough(const Corners& corners, const std::vector<Vector2d>& way) {
+bool drivenThrough(const Corners& corners, const std::vector<DrivenStep>& way) {
   const Corners inner = within(corners);
-  for (std::size_t i = 1; i < way.size(); ++i) {
+  for (const DrivenStep& step : way) {
     for (std::size_t k = 1; k < 4; ++k) {  // 0 is the entrance
-      if (meet(way[i - 1], way[i], inner[k], inner[(k + 1) % 4])) return true;
+      if (meet(step.from, step.to, inner[k], inner[(k + 1) % 4])) return true;
     }
   }
   return false;

@@ -6,16 +6,17 @@
 #include <array>
 #include <vector>
 
+#include "parkade/mapping/driven_way.hpp"
 #include "parkade/mapping/parking_map.hpp"
 
 // What speaks against a slot beside its own lines. Corners as MapSlot's, one frame for all.
 
 namespace parkade {
 
-/// Whether a way of the vehicle's origin crosses a slot's sides or its rear, a fifth within: who
-/// parks crosses the entrance alone.
+/// Whether the vehicle's origin crossed a slot's sides or its rear, a fifth within: who parks
+/// crosses the entrance alone.
 bool drivenThrough(const std::array<Eigen::Vector2d, 4>& corners,
-                   const std::vector<Eigen::Vector2d>& way);
+                   const std::vector<DrivenStep>& way);
 
 /// An arrow, a limit, a stop line, a crossing or a bump: slots hold none.
 bool isForDrivers(SemanticClass c);

@@ -114,9 +114,7 @@ void SlotRegistry::update(const std::vector<SlotObservation>& observations, Time
                           const SE2& T_world_vehicle, std::int64_t anchor, bool new_view,
                           const BevLabels* labels) {
   Impl& m = *impl_;
-  constexpr double kStep = 0.1;  // m
-  const Eigen::Vector2d place = T_world_vehicle.translation();
-  if (m.way.empty() || (place - m.way.back().p).norm() >= kStep) m.way.push_back({place, anchor});
+  m.way.add(T_world_vehicle.translation(), anchor);
   std::vector<Seen> all;
   for (const SlotObservation& o : observations) {
     if (new_view && !o.number.empty()) {
@@ -160,7 +158,7 @@ void SlotRegistry::moveWithAnchors(const std::function<SE2(std::int64_t)>& corre
     turn.bottomRightCorner<2, 2>() = R;
     track.covariance = (turn * track.covariance * turn.transpose()).eval();
   }
-  for (Impl::Place& place : impl_->way) place.p = correction(place.anchor) * place.p;
+  impl_->way.moveWithAnchors(correction);
   impl_->numbers.moveWithAnchors(correction);
   impl_->of_rows.clear();
   impl_->replaced.clear();

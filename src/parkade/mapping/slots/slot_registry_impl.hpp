@@ -21,11 +21,7 @@ struct SlotRegistry::Impl {
   SlotRegistryOptions options;
   std::vector<slot_registry::Track> tracks;  // ordered by id
   std::int64_t next_id = 1;
-  struct Place {
-    Eigen::Vector2d p;
-    std::int64_t anchor;
-  };
-  std::vector<Place> way;              // of the vehicle's origin
+  DrivenWay way{0.1};                  // of the vehicle's origin
   std::vector<MapSlot> of_rows;        // that the rows have beside the tracks
   TimeNs completed_ns = 0;             // when they were told
   std::vector<std::int64_t> replaced;  // tracks in whose places those lie
@@ -46,13 +42,8 @@ struct SlotRegistry::Impl {
   void forgetOdd();
   void mergeDuplicates();
   [[nodiscard]] std::vector<const slot_registry::Track*> distinct() const;
-  [[nodiscard]] std::vector<Eigen::Vector2d> drivenWay() const {
-    std::vector<Eigen::Vector2d> driven;
-    for (const Place& place : way) driven.push_back(place.p);
-    return driven;
-  }
   [[nodiscard]] bool isPlausible(const MapSlot& slot, const std::vector<MapObject>& objects,
-                                 const std::vector<Eigen::Vector2d>& driven) const;
+                                 const std::vector<DrivenStep>& driven) const;
   [[nodiscard]] std::vector<MapSlot> seenSlots(TimeNs now_ns,
                                                const std::vector<MapObject>& objects) const;
   [[nodiscard]] MapSlot ofRow(MapSlot slot, TimeNs now_ns) const;

@@ -46,14 +46,14 @@ std::vector<const Track*> SlotRegistry::Impl::distinct() const {
 }
 
 bool SlotRegistry::Impl::isPlausible(const MapSlot& slot, const std::vector<MapObject>& objects,
-                                     const std::vector<Eigen::Vector2d>& driven) const {
+                                     const std::vector<DrivenStep>& driven) const {
   return !drivenThrough(slot.corners, driven) && !holdsRoadMarking(slot.corners, objects) &&
          !holdsPillar(slot.corners, objects, slot.observations);
 }
 
 std::vector<MapSlot> SlotRegistry::Impl::seenSlots(TimeNs now_ns,
                                                    const std::vector<MapObject>& objects) const {
-  const std::vector<Eigen::Vector2d> driven = drivenWay();
+  const std::vector<DrivenStep> driven = way.steps();
   std::vector<MapSlot> seen;
   for (const Track* track : distinct()) {
     if (std::find(replaced.begin(), replaced.end(), track->id) != replaced.end()) continue;
@@ -103,7 +103,7 @@ void keepBeatenByNone(const std::vector<MapSlot>& seen, const std::vector<MapSlo
 void SlotRegistry::completeRows(TimeNs now_ns, const std::vector<MapObject>& objects,
                                 const LayeredGrid& grid) {
   Impl& m = *impl_;
-  const std::vector<Eigen::Vector2d> driven = m.drivenWay();
+  const std::vector<DrivenStep> driven = m.way.steps();
   const std::vector<MapSlot> before = std::exchange(m.of_rows, {});
   m.replaced.clear();
   m.completed_ns = now_ns;

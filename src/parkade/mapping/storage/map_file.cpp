@@ -100,6 +100,11 @@ void createEmpty(const std::string& path) {
     database.execute("INSERT INTO meta VALUES ('resolution', '0.05')");
     transaction.commit();
   }
+  // What a killed writer left beside a map that was deleted since would be played back into this
+  // one.
+  for (const char* ending : {"-journal", "-wal", "-shm"}) {
+    std::filesystem::remove(path + ending, code);
+  }
   std::filesystem::rename(temporary, path, code);
   if (code) throw SqliteError(fmt::format("{}: cannot be created: {}", path, code.message()));
 }

@@ -40,6 +40,23 @@ class MapFileTest : public ::testing::Test {
     const Status saved = file->save(map);
     ASSERT_TRUE(saved) << saved.error().message;
   }
+  // Another process saves maps one after the other, and is killed after a while.
+  void killWhileSaving(std::uint64_t seed, std::chrono::milliseconds after) {
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      ParkingMap map = sampleMap(seed);
+      Result<MapFile> file = MapFile::open(path_);
+      while (file) {
+        map.grid.add(GridLayer::kAvailability, {1.0, 2.0}, SemanticClass::kFloor, 0.1F);
+        if (!file->save(map)) break;
+      }
+      _exit(1);
+    }
+    std::this_thread::sleep_for(after);
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+  }
   std::string folder_;
   std::string path_;
 };
@@ -238,6 +255,38 @@ TEST_F(MapFileTest, DamagedBytesNeverCrash) {
   EXPECT_LT(loaded, kRounds);
 }
 
+TEST_F(MapFileTest, WhatAKilledWriterLeftIsNotPlayedIntoANewMap) {
+  ParkingMap first = sampleMap(7);
+  for (int k = 0; k < 400; ++k) {
+    first.grid.add(GridLayer::kAvailability, {4.0 * k, 2.0}, SemanticClass::kFloor, 0.1F);
+  }
+  save(first);
+  // In the middle of a save the journal holds what the file held before: a killed writer leaves it.
+  const std::string journal = path_ + "-journal";
+  const std::string left = path_ + ".left";
+  {
+    sqlite::Database database(path_, sqlite::Database::Mode::kReadWriteCreate);
+    database.execute("PRAGMA cache_size = 2");
+    database.execute("BEGIN IMMEDIATE");
+    database.execute("UPDATE tile SET cells = randomblob(3000)");
+    ASSERT_TRUE(std::filesystem::copy_file(journal, left));
+    database.execute("ROLLBACK");
+  }
+  // The map alone is deleted then, and another one begun.
+  std::filesystem::remove(path_);
+  std::filesystem::rename(left, journal);
+  ASSERT_TRUE(MapFile::open(path_));
+  const Result<ParkingMap> empty = loadMap(path_);
+  ASSERT_TRUE(empty) << empty.error().message;
+  EXPECT_TRUE(empty->grid.tiles(GridLayer::kAvailability).empty());
+  ParkingMap map = sampleMap(9);
+  save(map);
+  EXPECT_TRUE(checkIntegrity(path_));
+  const Result<ParkingMap> loaded = loadMap(path_);
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  expectSame(map, *loaded);
+}
+
 TEST_F(MapFileTest, KillDuringWritingLeavesAMapThatOpens) {
   // The first save is the parent's: a child may be killed before it reaches its own.
   ParkingMap first = sampleMap(99);
@@ -245,20 +294,8 @@ TEST_F(MapFileTest, KillDuringWritingLeavesAMapThatOpens) {
   constexpr int kRounds = 50;
   int complete = 0;
   for (int round = 0; round < kRounds; ++round) {
-    const pid_t child = fork();
-    ASSERT_GE(child, 0);
-    if (child == 0) {
-      ParkingMap map = sampleMap(static_cast<std::uint64_t>(round));
-      Result<MapFile> file = MapFile::open(path_);
-      while (file) {
-        map.grid.add(GridLayer::kAvailability, {1.0, 2.0}, SemanticClass::kFloor, 0.1F);
-        if (!file->save(map)) break;
-      }
-      _exit(1);
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(5 + 3 * round % 61));
-    kill(child, SIGKILL);
-    waitpid(child, nullptr, 0);
+    killWhileSaving(static_cast<std::uint64_t>(round),
+                    std::chrono::milliseconds(5 + 3 * round % 61));
     const Result<ParkingMap> loaded = loadMap(path_);
     ASSERT_TRUE(loaded) << loaded.error().message;
     complete += loaded->slots.size() == 6U ? 1 : 0;
