@@ -9,6 +9,7 @@
 #include "parkade/geometry/se2.hpp"
 
 namespace parkade {
+
 DeadReckoning::DeadReckoning(const SE3& T_vehicle_imu, const DeadReckoningOptions& options)
     : T_vehicle_imu_(T_vehicle_imu), options_(options) {}
 
@@ -75,23 +76,33 @@ void DeadReckoning::advance(const ImuSample& sample, TimeNs until) {
   }
   const Eigen::Vector3d rate = still ? Eigen::Vector3d::Zero() : Eigen::Vector3d(gyro - bias_);
   const double yaw_rate = rate.dot(up_);
-  if (!still) {
-    // Gravity turns in the vehicle against the car's own turn; what the accelerometer feels beside
-    // it is the wheels' acceleration and the curve's.
-    up_ = (SO3::exp(-rate * dt) * up_).normalized();
-    const Eigen::Vector3d motion((speed - last_speed_) / dt, speed * yaw_rate, 0.0);
-    const Eigen::Vector3d felt = accel - motion;
-    if (felt.norm() > 1.0) {
-      up_ =
-          (up_ + std::min(1.0, dt / options_.attitude_s) * (felt.normalized() - up_)).normalized();
-    }
-  }
+  if (!still) levelUp(rate, accel, speed, dt);
   last_speed_ = speed;
   const SE2 increment = SE2::exp({step, 0.0, yaw_rate * dt});
   const SE2 pose = SE2(yaw_, position_) * increment;
   yaw_ = pose.angle();
   position_ = pose.translation();
   way_ += std::abs(step);
+  const Eigen::Matrix3d F = increment.inverse().adjoint();
+  covariance_ = F * covariance_ * F.transpose() + silenceNoise(sample.t_ns, until, dt);
+  if (!still) covariance_.diagonal() += drivingNoise(std::abs(step), until, dt);
+  t_ns_ = until;
+}
+
+void DeadReckoning::levelUp(const Eigen::Vector3d& rate, const Eigen::Vector3d& accel, double speed,
+                            double dt) {
+  // Gravity turns in the vehicle against the car's own turn; what the accelerometer feels beside it
+  // is the wheels' acceleration and the curve's.
+  const double yaw_rate = rate.dot(up_);
+  up_ = (SO3::exp(-rate * dt) * up_).normalized();
+  const Eigen::Vector3d motion((speed - last_speed_) / dt, speed * yaw_rate, 0.0);
+  const Eigen::Vector3d felt = accel - motion;
+  if (felt.norm() <= 1.0) return;
+  const double share = std::min(1.0, dt / options_.attitude_s);
+  up_ = (up_ + share * (felt.normalized() - up_)).normalized();
+}
+
+Eigen::Vector3d DeadReckoning::drivingNoise(double step, TimeNs until, double dt) const {
   // What stays the same over the drive (wheel radius, bias) grows with the square of way and time.
   const double bias_sigma =
       kDegree * (bias_seconds_ > 0.0 ? std::hypot(options_.bias_floor_deg_s,
@@ -99,14 +110,13 @@ void DeadReckoning::advance(const ImuSample& sample, TimeNs until) {
                                                       std::sqrt(std::min(bias_seconds_, 30.0)))
                                      : options_.bias_unknown_deg_s);
   const TimeNs since = bias_seconds_ > 0.0 ? bias_t_ns_ : origin_t_ns_;
-  Eigen::Matrix3d Q = Eigen::Matrix3d::Zero();
-  if (!still) {
-    const double walk = square(options_.side_sigma) * std::abs(step);
-    Q(0, 0) = walk + 2.0 * square(options_.scale_sigma) * way_ * std::abs(step);
-    Q(1, 1) = walk;
-    Q(2, 2) = square(kDegree * options_.gyro_density_deg) * dt +
-              2.0 * square(bias_sigma) * toSeconds(until - since) * dt;
-  }
+  const double walk = square(options_.side_sigma) * step;
+  return {walk + 2.0 * square(options_.scale_sigma) * way_ * step, walk,
+          square(kDegree * options_.gyro_density_deg) * dt +
+              2.0 * square(bias_sigma) * toSeconds(until - since) * dt};
+}
+
+Eigen::Matrix3d DeadReckoning::silenceNoise(TimeNs last_imu, TimeNs until, double dt) const {
   // What the car may do unnoticed while a sensor is silent: its variance is that of the whole
   // silence.
   constexpr double kUnseenTurn = 0.5;   // rad/s
@@ -115,15 +125,23 @@ void DeadReckoning::advance(const ImuSample& sample, TimeNs until) {
     const double seconds = toSeconds(until - last);
     return seconds > options_.max_silence_s ? seconds : 0.0;
   };
-  if (const double s = silence(sample.t_ns); s > 0.0) {
+  Eigen::Matrix3d Q = Eigen::Matrix3d::Zero();
+  if (const double s = silence(last_imu); s > 0.0) {
     Q(2, 2) += square(kUnseenTurn) * (square(s) - square(std::max(0.0, s - dt)));
   }
   if (const double s = silence(speeds_.back().t_ns); s > 0.0) {
     Q(0, 0) += square(0.5 * kUnseenAccel) * (std::pow(s, 4) - std::pow(std::max(0.0, s - dt), 4));
   }
-  const Eigen::Matrix3d F = increment.inverse().adjoint();
-  covariance_ = F * covariance_ * F.transpose() + Q;
-  t_ns_ = until;
+  return Q;
+}
+
+void DeadReckoning::start() {
+  t_ns_ = std::max(imu_.front().t_ns, speeds_.front().t_ns);
+  while (imu_.size() > 1 && imu_[1].t_ns <= t_ns_) imu_.pop_front();
+  origin_t_ns_ = bias_t_ns_ = t_ns_;
+  const Eigen::Vector3d accel = T_vehicle_imu_.rotation() * imu_.front().accel;
+  if (accel.norm() > 1.0) up_ = accel.normalized();
+  started_ = true;
 }
 
 PoseEstimate DeadReckoning::poseAt(TimeNs t_ns) {
@@ -134,14 +152,7 @@ PoseEstimate DeadReckoning::poseAt(TimeNs t_ns) {
     e.reason = imu_.empty() ? "no reading of the inertial unit yet" : "no wheel speed yet";
     return e;
   }
-  if (!started_) {
-    t_ns_ = std::max(imu_.front().t_ns, speeds_.front().t_ns);
-    while (imu_.size() > 1 && imu_[1].t_ns <= t_ns_) imu_.pop_front();
-    origin_t_ns_ = bias_t_ns_ = t_ns_;
-    const Eigen::Vector3d accel = T_vehicle_imu_.rotation() * imu_.front().accel;
-    if (accel.norm() > 1.0) up_ = accel.normalized();
-    started_ = true;
-  }
+  if (!started_) start();
   const auto still_starting = [&] {
     return way_ < 1e-3 && bias_seconds_ < options_.start_s &&
            std::abs(last_speed_) < options_.still_mps;
@@ -166,6 +177,11 @@ PoseEstimate DeadReckoning::poseAt(TimeNs t_ns) {
   } else if (no_imu) {
     e.reason = "the inertial unit is silent";
   }
+  tellPose(e);
+  return e;
+}
+
+void DeadReckoning::tellPose(PoseEstimate& e) const {
   const double pitch = std::atan2(-up_.x(), std::hypot(up_.y(), up_.z()));
   const double roll = std::atan2(up_.y(), up_.z());
   e.T_odom_vehicle =
@@ -187,7 +203,6 @@ PoseEstimate DeadReckoning::poseAt(TimeNs t_ns) {
   turn.topLeftCorner<3, 3>() = R;
   turn.bottomRightCorner<3, 3>() = R;
   e.covariance.topLeftCorner<6, 6>() = turn * level * turn.transpose();
-  return e;
 }
 
 }  // namespace parkade

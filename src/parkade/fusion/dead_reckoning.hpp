@@ -64,7 +64,12 @@ class DeadReckoning {
     TimeNs t_ns = 0;
     double mps = 0.0;
   };
+  void start();
   void advance(const ImuSample& sample, TimeNs until);
+  void levelUp(const Eigen::Vector3d& rate, const Eigen::Vector3d& accel, double speed, double dt);
+  [[nodiscard]] Eigen::Vector3d drivingNoise(double step, TimeNs until, double dt) const;
+  [[nodiscard]] Eigen::Matrix3d silenceNoise(TimeNs last_imu, TimeNs until, double dt) const;
+  void tellPose(PoseEstimate& e) const;
   [[nodiscard]] double speedAt(TimeNs t_ns) const;
   void stand(const Eigen::Vector3d& gyro, const Eigen::Vector3d& accel, double dt);
 

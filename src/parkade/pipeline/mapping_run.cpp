@@ -13,6 +13,7 @@
 #include "parkade/core/check.hpp"
 #include "parkade/pipeline/frame_packets.hpp"
 #include "parkade/pipeline/pace.hpp"
+#include "parkade/pipeline/semantic_parts.hpp"
 #include "parkade/pipeline/semantic_queue.hpp"
 #include "parkade/pipeline/thread_pool.hpp"
 #include "parkade/tracking/overlap.hpp"
@@ -295,27 +296,12 @@ Result<std::unique_ptr<MappingRun>> MappingRun::create(const Rig& rig,
   if (method == RunMethod::kVis) {
     return std::unique_ptr<MappingRun>(new MappingRun(std::move(impl)));
   }
-  auto front_end = SemanticFrontEnd::create(rig, *masks, options.semantics);
-  if (!front_end) return front_end.error();
-  if (method != RunMethod::kFused) {
-    impl->reckoning = std::make_unique<DeadReckoning>(rig.imu.T_vehicle_imu, options.reckoning);
-  }
-  if (method == RunMethod::kAvpSlam) {
-    impl->mapper = std::make_unique<AvpSlam>(options.avp_slam);
-  } else {
-    std::vector<Eigen::Vector3d> viewpoints;
-    for (const RigCamera& camera : rig.cameras) {
-      viewpoints.push_back(camera.T_vehicle_cam.translation());
-    }
-    FusedMapperOptions fusion = options.fusion;
-    // What key points tell of their growth is too large; what wheels do is not.
-    if (method == RunMethod::kSemantic) {
-      fusion.odometry.told_share = std::max(1.0, fusion.odometry.told_share);
-    }
-    impl->mapper = std::make_unique<FusedMapper>(fusion, std::move(viewpoints));
-  }
+  Result<SemanticParts> parts = makeSemanticParts(rig, *masks, options, method);
+  if (!parts) return parts.error();
+  impl->reckoning = std::move(parts->reckoning);
+  impl->mapper = std::move(parts->mapper);
   impl->semantics = std::make_unique<SemanticQueue>(
-      std::move(front_end).value(), *impl->mapper, impl->observers,
+      std::move(parts->front_end), *impl->mapper, impl->observers,
       SemanticQueueOptions{options.semantics_delay, options.live, threads > 1});
   return std::unique_ptr<MappingRun>(new MappingRun(std::move(impl)));
 }
