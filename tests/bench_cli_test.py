@@ -74,6 +74,8 @@ class BenchErrorTest(unittest.TestCase):
             (["--out", self.out, "--variant", "a=fused,foo=3"], 2, ["a:", "foo"]),
             (["--out", self.out, "--set", "vio.window.keyframes=800"], 2, ["keyframes", "800"]),
             (["--out", self.out, "--import", "a=nowhere"], 2, ["nowhere", "no such folder"]),
+            (["--out", self.out, "--sequences", "nowhere"], 2, ["nowhere", "no such folder"]),
+            (["--out", self.out, "--sequences", "/usr"], 2, ["/usr", "holds no whole recording"]),
             (["--out", self.out, "--duration", "-1"], 2, ["a number of 0 or more", "'-1'"]),
             (["--out", self.out, "--seeds", "0"], 2, ["--seeds"]),
             (["nonsense", "--out", self.out], 2, ["nonsense"]),

@@ -276,7 +276,7 @@ class RunEurocTest(unittest.TestCase):
         self.assertNotEqual(now["trajectory.tum"], b"old trajectory.tum")
         self.assertIn(b"source:", now["config.yaml"])
 
-    def interrupt(self, out, *more):
+    def interrupt(self, out, *more, how=signal.SIGINT, from_percent=0):
         # A shell's background jobs ignore interruptions by the keyboard.
         process = subprocess.Popen(
             [PARKADE, "run", EUROC, "--out", out, "--real-time", *more],
@@ -284,21 +284,70 @@ class RunEurocTest(unittest.TestCase):
             preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
         )  # fmt: skip
         # The run itself has begun when it tells its progress.
-        process.stderr.readline()
-        process.send_signal(signal.SIGINT)
-        process.communicate(timeout=60)
+        for line in process.stderr:
+            if "%" in line and int(line.split("%")[0].split()[-1]) >= from_percent:
+                break
+        process.send_signal(how)
+        _, errors = process.communicate(timeout=60)
         self.assertNotEqual(process.returncode, 0)
+        return process.returncode, errors
 
     def test_a_run_that_is_stopped_leaves_old_results_or_a_folder_to_run_into(self):
         old = self.folder / "old"
         before = old_run(old)
-        self.interrupt(old, "--force")
-        self.assertEqual(contents(old), before)
+        for how in (signal.SIGINT, signal.SIGKILL):
+            self.interrupt(old, "--force", how=how)
+            self.assertEqual(contents(old), before)
         fresh = self.folder / "fresh"
-        self.interrupt(fresh)
+        self.interrupt(fresh, how=signal.SIGKILL)
         self.assertEqual(list(contents(fresh)), ["config.yaml"])
         again = parkade("run", EUROC, "--out", fresh, "--duration", 5)
         self.assertEqual(again.returncode, 0, again.stderr)
+
+    def test_a_run_that_is_interrupted_keeps_its_poses(self):
+        out = self.folder / "interrupted"
+        code, errors = self.interrupt(out, from_percent=40)
+        self.assertEqual(code, 128 + signal.SIGINT)
+        for word in ["stopped by a signal (Interrupt)", f"the poses up to there are in {out}"]:
+            self.assertIn(word, errors)
+        rows = (out / "trajectory.tum").read_text(encoding="utf-8").splitlines()
+        self.assertGreater(len(rows), 20)
+        self.assertTrue((out / "health.csv").exists())
+
+    def test_a_log_that_cannot_be_written_costs_no_results(self):
+        out = self.folder / "unlogged"
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            code = subprocess.call(
+                [PARKADE, "run", EUROC, "--out", out, "--duration", "5"],
+                stdout=subprocess.DEVNULL, stderr=full, timeout=600,
+            )  # fmt: skip
+        self.assertEqual(code, 0)
+        self.assertTrue((out / "trajectory.tum").exists())
+
+    def test_a_recording_is_never_written_into(self):
+        recording = self.folder / "recording"
+        (recording / "mav0").mkdir(parents=True)
+        (recording / "rig.yaml").write_text("a calibration", encoding="utf-8")
+        before = contents(recording)
+        for out in (recording, recording / "mav0", recording / "mav0" / "below"):
+            for option in ("--out", "--debug-images"):
+                more = ["--out", self.folder / "elsewhere"] if option != "--out" else []
+                result = parkade("run", EUROC, "--force", option, out, *more)
+                self.assertEqual(result.returncode, 1)
+                self.assertIn("is a recording", result.stderr)
+        self.assertEqual(contents(recording), before)
+
+    def test_what_info_finds_wrong_is_said(self):
+        cut = self.folder / "cut"
+        shutil.copytree(EUROC, cut)
+        table = cut / "mav0" / "imu0" / "data.csv"
+        rows = table.read_text(encoding="utf-8").splitlines()
+        end = int(rows[1].split(",")[0]) + 7 * 10**9
+        kept = [row for row in rows if row.startswith("#") or int(row.split(",")[0]) < end]
+        table.write_text("\n".join(kept) + "\n", encoding="utf-8")
+        result = parkade("run", cut, "--out", self.folder / "warned", "--duration", 10)
+        self.assertIn("imu0 covers images", result.stderr)
+        self.assertIn("degraded", result.stdout)
 
     def test_fused_writes_a_map_and_the_same_bytes_on_any_number_of_threads(self):
         runs = []

@@ -60,7 +60,8 @@ struct Rig {
   [[nodiscard]] Result<Rig> subset(const std::vector<std::string>& names) const;
 };
 
-/// Reads rig.yaml (docs/formats.md). Fails with file, line, key and value on a missing or unknown
+/// Reads rig.yaml (docs/formats.md), or a Kalibr camera chain with the IMU file beside it
+/// (kalibrImuFile()). Fails with file, line, key and value on a missing or unknown
 /// key, an unknown model, a matrix that is no rotation, a number that is not finite.
 Result<Rig> readRig(const std::string& path);
 /// The same for the text of such a file; path is what messages call it.
@@ -69,6 +70,10 @@ Result<Rig> parseRig(const std::string& text, const std::string& path);
 /// Writes a rig that readRig reads back: numbers to the same bits, rotations (written as matrices)
 /// to their last digit. Masks below the file's folder are written relative to it.
 Status writeRig(const Rig& rig, const std::string& path);
+
+/// The IMU file that belongs to a Kalibr camera chain, by Kalibr's names: NAME-imu.yaml beside
+/// NAME-camchain-imucam.yaml, imu.yaml beside camchain.yaml.
+std::string kalibrImuFile(const std::string& camchain_path);
 
 /// Reads a Kalibr camera chain and, where not empty, a Kalibr IMU file, as Kalibr writes them. The
 /// vehicle frame is then the IMU's; for a chain that was calibrated without an IMU, cam0's.

@@ -78,6 +78,17 @@ ImuCalibration readKalibrImu(const YamlNode& root) {
 
 }  // namespace
 
+std::string kalibrImuFile(const std::string& camchain_path) {
+  const std::filesystem::path path(camchain_path);
+  std::string name = path.filename().string();
+  for (const std::string_view part : {"camchain-imucam", "camchain"}) {
+    const std::size_t at = name.find(part);
+    if (at == std::string::npos) continue;
+    return (path.parent_path() / name.replace(at, part.size(), "imu")).string();
+  }
+  return (path.parent_path() / "imu.yaml").string();
+}
+
 Result<Rig> readKalibr(const std::string& camchain_path, const std::string& imu_path) {
   Result<Rig> rig = parseYamlFile<Rig>(
       camchain_path, [&](const YamlNode& root) { return readCamchain(root, !imu_path.empty()); });

@@ -98,6 +98,17 @@ TEST_F(Kalibr, ReadsChainAndImu) {
   EXPECT_EQ(rig->imu.accelerometer_random_walk, 4.33e-4);
 }
 
+TEST_F(Kalibr, AChainIsKnownWhereARigIsReadAndItsImuByItsName) {
+  write("garage-imu.yaml", kImu);
+  const Result<Rig> rig = readRig(write("garage-camchain-imucam.yaml", kCamchain));
+  ASSERT_TRUE(rig.ok()) << rig.error().message;
+  EXPECT_GT(rig->cameras.size(), 1U);
+  EXPECT_GT(rig->imu.rate_hz, 0.0);
+  const Result<Rig> alone = readRig(write("camchain.yaml", kCamchain));
+  ASSERT_FALSE(alone.ok());
+  EXPECT_THAT(alone.error().message, testing::HasSubstr("imu.yaml"));
+}
+
 TEST_F(Kalibr, ReadsTheImuFileThatItWrites) {
   const Result<Rig> rig =
       readKalibr(write("camchain.yaml", kCamchain), write("imu.yaml", kImuChain));

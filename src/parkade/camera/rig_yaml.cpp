@@ -156,6 +156,9 @@ std::string writeRigNode(const Rig& rig, const std::string& path) {
 }  // namespace
 
 Result<Rig> readRig(const std::string& path) {
+  const Result<YamlNode> root = openYaml(path);
+  if (!root) return root.error();
+  if (root->isMap() && root->has("cam0")) return readKalibr(path, kalibrImuFile(path));
   return parseYamlFile<Rig>(path, readRigNode);
 }
 

@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Parkade authors
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/cli/bench_paper.hpp"
+#include "parkade/cli/output_folder.hpp"
 
 #include <fmt/core.h>
+#include <filesystem>
 
 #include <chrono>
 #include <map>
@@ -164,6 +166,22 @@ Status writeAll(const PaperBenchOptions& options, const BenchPlan& plan,
   return status;
 }
 
+// A folder misspelt would cost hours of drawing.
+Status checkSequences(const PaperBenchOptions& options, const BenchPlan& plan) {
+  if (options.sequences.empty()) return {};
+  std::error_code code;
+  if (!std::filesystem::is_directory(options.sequences, code)) {
+    return Error{fmt::format("bench: --sequences {}: no such folder", options.sequences)};
+  }
+  if (givenDrives(options, plan).empty()) {
+    return Error{fmt::format(
+        "bench: --sequences {}: holds no whole recording that is asked for, as {}; without "
+        "--sequences all are drawn",
+        options.sequences, plan.drives.front().name)};
+  }
+  return {};
+}
+
 }  // namespace
 
 int runPaperBench(PaperBenchOptions options) {
@@ -173,7 +191,8 @@ int runPaperBench(PaperBenchOptions options) {
   if (options.quick) makeQuick(options);
   const Result<BenchPlan> plan = planBench(options);
   if (!plan) return failUsage(plan.error());
-  if (Status made = makeFolders(options.out); !made) return fail(made.error());
+  if (Status given = checkSequences(options, *plan); !given) return failUsage(given.error());
+  if (Status made = makeWritable(options.out); !made) return fail(made.error());
   // Before anything is drawn, perhaps into the same folder.
   const std::string setting = settingText(options, *plan, givenDrives(options, *plan));
   const std::vector<JudgedRun> runs = performAll(options, *plan);

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 
@@ -26,6 +27,32 @@ std::string lastMessage(const std::string& log) {
   if (begin == std::string::npos) return "";
   return text->substr(begin + mark.size(), text->find('\n', begin) - begin - mark.size());
 }
+
+volatile std::sig_atomic_t running_child = 0;
+
+// Ends the child too, which writes what it has, and then this program as if nobody had listened.
+void passOn(int signal) {
+  if (running_child != 0) kill(static_cast<pid_t>(running_child), signal);
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+/// While one lives, who ends this program ends the child as well.
+class SignalsPassedOn {
+ public:
+  explicit SignalsPassedOn(pid_t child) {
+    running_child = child;
+    std::signal(SIGTERM, passOn);
+    std::signal(SIGINT, passOn);
+  }
+  ~SignalsPassedOn() {
+    std::signal(SIGTERM, SIG_DFL);
+    std::signal(SIGINT, SIG_DFL);
+    running_child = 0;
+  }
+  SignalsPassedOn(const SignalsPassedOn&) = delete;
+  SignalsPassedOn& operator=(const SignalsPassedOn&) = delete;
+};
 
 }  // namespace
 
@@ -54,6 +81,7 @@ Status runProgram(const std::vector<std::string>& arguments, const std::string& 
   if (error != 0) {
     return Error{fmt::format("{}: cannot be started: {}", words.front(), std::strerror(error))};
   }
+  const SignalsPassedOn passed_on(child);
   int status = 0;
   while (waitpid(child, &status, 0) < 0) {
     if (errno != EINTR) {

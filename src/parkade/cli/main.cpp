@@ -7,6 +7,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <string>
 
 #include "parkade/cli/command.hpp"
 #include "parkade/core/log.hpp"
@@ -100,7 +101,8 @@ int flushOutput(int exit_code) {
 }  // namespace
 
 int fail(const Error& error) {
-  fmt::print(stderr, "parkade: {}\n", error.message);
+  const std::string line = fmt::format("parkade: {}\n", error.message);
+  std::fputs(line.c_str(), stderr);  // closed or full: the exit code is left
   return 1;
 }
 

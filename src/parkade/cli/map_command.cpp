@@ -229,9 +229,15 @@ Status mergeMaps(const MapArguments& arguments) {
         fmt::format("{} into {}: {}", arguments.later, arguments.path, report.error().message)};
   }
   const std::string out = mapFileOf(arguments.out);
-  Result<MapFile> file = MapFile::open(out);
-  if (!file) return file.error();
-  if (Status status = file->save(*saved); !status) return status;
+  std::error_code code;
+  const bool is_new = !std::filesystem::exists(out, code);
+  {
+    Result<MapFile> file = MapFile::open(out);
+    const Status status = file ? file->save(*saved) : Status(file.error());
+    // What was made for nothing must not pass for a map.
+    if (!status && is_new) std::filesystem::remove(out, code);
+    if (!status) return status;
+  }
   const std::string gone =
       report->objects_gone > 0
           ? fmt::format(", {} gone, for bare floor was seen there", report->objects_gone)

@@ -27,6 +27,7 @@ Result<OpenedSource> openFolder(const SourceRequest& request) {
   options.gray = request.gray;
   options.gray_beside = request.gray_beside;
   options.tolerate_stamps = request.tolerate_stamps;
+  options.join_tolerance_ms = request.join_tolerance_ms;
   options.start_s = request.start_s;
   options.duration_s = request.duration_s;
   options.decode_threads = request.decode_threads;

@@ -21,6 +21,7 @@ struct SourceRequest {
   double start_s = 0.0;
   double duration_s = 0.0;  ///< 0: to the end
   bool tolerate_stamps = false;
+  double join_tolerance_ms = -1.0;  ///< between images of one instant; -1: as is usual
   bool gray = true;
   bool gray_beside = false;  ///< gray as well where colour is read, as key points want it
   int decode_threads = 1;

@@ -56,12 +56,6 @@ bool isRunFolder(const fs::path& folder) {
   return config.ok() && config->starts_with(kRunConfigHeading);
 }
 
-bool holdsResults(const fs::path& folder) {
-  const std::vector<std::string> files = resultFiles();
-  return std::any_of(files.begin(), files.end(),
-                     [&](const std::string& name) { return isThere(folder / name); });
-}
-
 Status checkIsNoFile(const std::string& folder) {
   std::error_code code;
   if (!fs::exists(folder, code) || fs::is_directory(folder, code)) return {};
@@ -75,12 +69,32 @@ bool isEmpty(const std::string& folder) {
 
 }  // namespace
 
+bool holdsResults(const std::string& folder) {
+  const std::vector<std::string> files = resultFiles();
+  return std::any_of(files.begin(), files.end(),
+                     [&](const std::string& name) { return isThere(fs::path(folder) / name); });
+}
+
 Status checkOutputFolder(const std::string& folder, bool force) {
   if (Status status = checkIsNoFile(folder); !status) return status;
   if (force || isEmpty(folder)) return {};
   return Error{fmt::format(
       "{}: the folder is not empty; take another one, or --force to write into it all the same",
       folder)};
+}
+
+Status checkIsNoRecording(const std::string& folder) {
+  std::error_code code;
+  const fs::path path = fs::weakly_canonical(folder, code);
+  for (fs::path at = code ? fs::absolute(folder) : path; at.has_relative_path();
+       at = at.parent_path()) {
+    if (!fs::is_directory(at / "mav0", code)) continue;
+    return Error{fmt::format(
+        "{}: {} is a recording (it holds mav0/), whose files a run must not replace; take another "
+        "--out",
+        folder, at.string())};
+  }
+  return {};
 }
 
 Status checkRunFolder(const std::string& folder, bool force) {

@@ -15,9 +15,16 @@ inline constexpr const char* kRunConfigHeading = "# Effective configuration of '
 /// Changes nothing.
 Status checkOutputFolder(const std::string& folder, bool force);
 
-/// The same for a run's folder. One that is left of a run that was stopped, without results, will
-/// do; one with results needs force, as they will be replaced.
+/// Refuses a recording's folder, or one within it, whatever is forced: a run would replace its
+/// rig.yaml.
+Status checkIsNoRecording(const std::string& folder);
+
+/// The same as checkOutputFolder() for a run's folder. One that is left of a run that was stopped,
+/// without results, will do; one with results needs force, as they will be replaced.
 Status checkRunFolder(const std::string& folder, bool force);
+
+/// Whether files of a run's results lie in a folder.
+bool holdsResults(const std::string& folder);
 
 /// Refuses the folder of the map that the run reads: the run would replace it.
 Status checkMapIsElsewhere(const std::string& folder, const std::string& map);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "parkade/cli/command.hpp"
+#include "parkade/cli/interruption.hpp"
 #include "parkade/cli/map_path.hpp"
 #include "parkade/cli/open_source.hpp"
 #include "parkade/cli/option_checks.hpp"
@@ -21,9 +22,11 @@
 #include "parkade/cli/report_pictures.hpp"
 #include "parkade/cli/run_report.hpp"
 #endif
+#include "parkade/core/log.hpp"
 #include "parkade/core/options.hpp"
 #include "parkade/core/progress.hpp"
 #include "parkade/io/file.hpp"
+#include "parkade/io/sequence_report.hpp"
 #include "parkade/mapping/storage/map_file.hpp"
 #include "parkade/pipeline/mapping_run.hpp"
 
@@ -106,7 +109,31 @@ Status checkFolders(const RunArguments& arguments) {
     const Status elsewhere = checkMapIsElsewhere(arguments.out, arguments.map);
     if (!elsewhere) return elsewhere;
   }
-  return checkRunFolder(arguments.out, arguments.force);
+  if (Status apart = checkIsNoRecording(arguments.out); !apart) return apart;
+  if (Status fit = checkRunFolder(arguments.out, arguments.force); !fit) return fit;
+  if (arguments.debug_images.empty()) return {};
+  if (Status apart = checkIsNoRecording(arguments.debug_images); !apart) return apart;
+  return checkOutputFolder(arguments.debug_images, arguments.force);
+}
+
+// What 'parkade info' finds wrong with a recording though a run takes it.
+void warnOf(const SourceRequest& request) {
+  if (request.spec.starts_with("sim:")) return;
+  const Result<SequenceReport> report = describeSequence(request.spec);
+  if (!report) return;  // the run says so itself
+  for (const SequenceCheck& check : report->checks) {
+    if (check.mark != CheckMark::kWarn) continue;
+    logWarning("{}: {}: {}", request.spec, check.name, check.detail);
+  }
+}
+
+// Nothing to say where all went well.
+std::string troubleText(const HealthLog& health, const std::string& out) {
+  const int degraded = health.frames(Health::kDegraded);
+  const int lost = health.frames(Health::kLost);
+  if (degraded + lost == 0) return "";
+  return fmt::format("{} frame sets degraded, {} lost: why, is in {}\n", degraded, lost,
+                     joinPath(out, "health.csv"));
 }
 
 Result<OpenedSource> openInput(const RunArguments& arguments, RunMethod method) {
@@ -207,6 +234,7 @@ Status runSequence(RunArguments arguments) {
     (*run)->addObserver(&*images);
   }
   const RunDescription description = describe(arguments, *opened, options);
+  warnOf(arguments.source);
   // After all that can go wrong before the run.
   Status begun = beginRunFolder(arguments.out, configText(description));
   if (!begun) return begun;
@@ -217,11 +245,17 @@ Status runSequence(RunArguments arguments) {
   (*run)->addObserver(&pictures);
 #endif
   ProgressPrinter progress("run");
+  const Interruption interruption;
+  opened->source = interruptible(std::move(opened->source));
   const Status outcome = (*run)->run(*opened->source, progress.callback());
   progress.finish();
   const RunSummary& summary = (*run)->summary();
   // With nothing to write, an earlier run's results stay.
   if (summary.frame_sets == 0) return outcome ? Status(nothingSeen(info)) : outcome;
+  if (Interruption::signal() != 0 && holdsResults(arguments.out)) {
+    return Error{fmt::format("{}; the results of the earlier run stay in {}",
+                             outcome.error().message, arguments.out)};
+  }
 
   const Status written = writeResults(arguments, description, **run, health);
   if (!written) return written;
@@ -235,6 +269,7 @@ Status runSequence(RunArguments arguments) {
   fmt::print("{}", timingTable(summary));
   fmt::print("{} frame sets, {} poses, {:.0f} tracks per frame set; wrote {}\n", summary.frame_sets,
              summary.poses, summary.mean_tracks, arguments.out);
+  fmt::print("{}", troubleText(health, arguments.out));
   if (!outcome) {
     return Error{fmt::format("{} (the poses up to there are in {})", outcome.error().message,
                              arguments.out)};
@@ -287,6 +322,12 @@ void addRunCommand(CLI::App& app, int& exit_code) {
       ->capture_default_str()
       ->group("Input");
   command
+      ->add_option("--join-tolerance", a->source.join_tolerance_ms,
+                   "Images of different cameras this close are one instant, ms; at most half a "
+                   "period (default: 5, or half a period where less)")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->group("Input");
+  command
       ->add_flag("--tolerate-stamps", a->source.tolerate_stamps,
                  "Repair stamps that go backwards or repeat instead of refusing the sequence")
       ->group("Input");
@@ -336,6 +377,8 @@ void addRunCommand(CLI::App& app, int& exit_code) {
     }
     const Status status = runSequence(*a);
     if (!status) exit_code = fail(status.error());
+    constexpr int kBySignal = 128;
+    if (!status && Interruption::signal() != 0) exit_code = kBySignal + Interruption::signal();
   });
 }
 

@@ -78,6 +78,9 @@ class Recorder {
       }
       const SequenceState state = inspectSequence(options_.out);
       folder = state.finished ? Folder::kComplete : state.begun ? Folder::kBegun : Folder::kNew;
+      if (folder == Folder::kComplete) {
+        if (Status holds = holdsWhatIsAsked(); !holds) return holds.error();
+      }
     } else if (options_.force && is_recording) {
       Status removed = removeRecording();
       if (!removed) return removed.error();
@@ -91,6 +94,20 @@ class Recorder {
     if (made) made = writeFileAtomic(spec_path, spec);
     if (!made) return made.error();
     return folder;
+  }
+
+  // A complete recording is not drawn again for what it lacks.
+  [[nodiscard]] Status holdsWhatIsAsked() const {
+    const auto lacks = [&](bool asked, const char* part) {
+      return asked && simulation_->spec().images && !exists(joinPath(options_.out, part));
+    };
+    const char* missing = lacks(options_.labels, "truth/labels")           ? "truth/labels"
+                          : lacks(options_.bev_labels, "truth/bev_labels") ? "truth/bev_labels"
+                                                                           : nullptr;
+    if (missing == nullptr) return {};
+    return Error{fmt::format(
+        "{}: the recording is complete, without {}; draw it anew with --force, or elsewhere",
+        options_.out, missing)};
   }
 
   // Only what a recording consists of: the folder may hold notes of its user.

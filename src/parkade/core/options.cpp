@@ -17,6 +17,10 @@
 namespace parkade {
 namespace {
 
+std::string inBrackets(const std::string& unit) {
+  return unit.empty() ? "" : " (" + unit + ")";
+}
+
 // A visitor that knows the dotted name of the field at hand.
 class PathVisitor : public OptionVisitor {
  protected:
@@ -100,9 +104,9 @@ class SettingVisitor : public PathVisitor {
     if (entry == nullptr) return;
     const std::optional<Number> parsed = parseNumber<Number>(entry->text);
     if (!parsed) {
-      problem(*entry, name, fmt::format("expected {} ({})", kind, unit));
+      problem(*entry, name, fmt::format("expected {}{}", kind, inBrackets(unit)));
     } else if (static_cast<double>(*parsed) < min || static_cast<double>(*parsed) > max) {
-      problem(*entry, name, fmt::format("expected {} ({})", rangeText(min, max), unit));
+      problem(*entry, name, fmt::format("expected {}{}", rangeText(min, max), inBrackets(unit)));
     } else if (apply_) {
       value = *parsed;
     }

@@ -44,12 +44,9 @@ void ProgressPrinter::update(double fraction) {
 }
 
 void ProgressPrinter::showLine(const std::string& text, const char* terminal_end) {
-  if (terminal_) {
-    fmt::print(stream_, "\r{:<78}{}", text, terminal_end);
-  } else {
-    fmt::print(stream_, "{}\n", text);
-  }
-  std::fflush(stream_);
+  const std::string line = terminal_ ? fmt::format("\r{:<78}{}", text, terminal_end) : text + "\n";
+  // A full disk behind a log must not end the work that it tells of.
+  if (std::fputs(line.c_str(), stream_) >= 0) std::fflush(stream_);
 }
 
 void ProgressPrinter::finish() {

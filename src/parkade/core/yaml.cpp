@@ -8,9 +8,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <set>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 namespace parkade {
@@ -178,6 +180,10 @@ void YamlNode::allowOnly(std::initializer_list<const char*> known) const {
 }
 
 Result<YamlNode> openYaml(const std::string& path) {
+  std::error_code code;
+  if (std::filesystem::is_directory(path, code)) {
+    return Error{fmt::format("{}: is a folder; expected a YAML file", path)};
+  }
   std::ifstream stream(path);
   if (!stream) return Error{fmt::format("{}: cannot open the file for reading", path)};
   std::stringstream content;

@@ -20,7 +20,7 @@ void findQuietSecond(const std::vector<ImuSample>& samples, const SO3& R_vehicle
     std::size_t end = begin;
     Eigen::Vector3d gyro = Eigen::Vector3d::Zero();
     Eigen::Vector3d accel = Eigen::Vector3d::Zero();
-    while (end < samples.size() && samples[end].t_ns < start + kNsPerSecond) {
+    while (end < samples.size() && samples[end].t_ns - start < kNsPerSecond) {
       gyro += samples[end].gyro;
       accel += samples[end].accel;
       ++end;
@@ -42,7 +42,7 @@ void findQuietSecond(const std::vector<ImuSample>& samples, const SO3& R_vehicle
       }
     }
     if (end == samples.size()) break;
-    while (begin < samples.size() && samples[begin].t_ns < start + kStep) ++begin;
+    while (begin < samples.size() && samples[begin].t_ns - start < kStep) ++begin;
   }
 }
 

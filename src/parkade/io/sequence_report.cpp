@@ -50,6 +50,7 @@ class Describer {
     if (rig) {
       rig_ = std::move(*rig);
       add(CheckMark::kPass, "calibration", fmt::format("{} cameras, imu", rig_->cameras.size()));
+      judgeRig();
     } else {
       add(CheckMark::kFail, "calibration", rig.error().message);
     }
@@ -72,6 +73,7 @@ class Describer {
   void addRateCheck(const std::string& name, const StreamStatistics& stream, double expected_hz);
   void describeImu();
   void judgeImu(const ImuReport& imu);
+  void judgeRig();
   void describeCameras();
   void describeCamera(const RigCamera& camera);
   void describeFrames();
@@ -116,6 +118,31 @@ void Describer::addRateCheck(const std::string& name, const StreamStatistics& st
       fmt::format("{:.4g} Hz, calibration says {:.4g} Hz", stream.rate_hz, expected_hz));
 }
 
+// What no car has, though a file may say so.
+void Describer::judgeRig() {
+  for (const RigCamera& camera : rig_->cameras) {
+    if (camera.mask_path.empty()) continue;
+    const Result<cv::Mat> mask = readImage(camera.mask_path, true);
+    if (!mask) {
+      add(CheckMark::kFail, camera.name + " mask", mask.error().message);
+    } else if (mask->cols != camera.camera.width() || mask->rows != camera.camera.height()) {
+      add(CheckMark::kFail, camera.name + " mask",
+          fmt::format("{}: {} x {} px, the calibration is for {} x {}", camera.mask_path,
+                      mask->cols, mask->rows, camera.camera.width(), camera.camera.height()));
+    }
+  }
+  if (!rig_->vehicle) return;
+  constexpr double kFurthest = 15.0;  // m
+  for (const RigCamera& camera : rig_->cameras) {
+    const Eigen::Vector3d& p = camera.T_vehicle_cam.translation();
+    if (p.z() > 0.0 && p.norm() < kFurthest) continue;
+    add(CheckMark::kWarn, camera.name + " mounting",
+        fmt::format("sits at ({:.4g}, {:.4g}, {:.4g}) m in the vehicle frame, {}: millimetres, or "
+                    "T_vehicle_cam the wrong way round?",
+                    p.x(), p.y(), p.z(), p.z() > 0.0 ? "far from the car" : "below the ground"));
+  }
+}
+
 void Describer::describeImu() {
   const Result<SensorTable<ImuSample>> table =
       readImuTable(joinPath(sensorFolder(sequence_, "imu0"), "data.csv"));
@@ -141,6 +168,11 @@ void Describer::judgeImu(const ImuReport& imu) {
                        : fmt::format(", expected {} +- {}: units of g, gravity taken off, or never "
                                      "at rest?",
                                      kGravity, kGravityTolerance)));
+  constexpr double kFastest = 6.0;  // rad/s, one sigma of one axis: nothing that carries cameras
+  const double turns = imu.gyro_std.maxCoeff();
+  add(turns < kFastest ? CheckMark::kPass : CheckMark::kWarn, "gyroscope",
+      fmt::format("{:.3g} rad/s (standard deviation of its liveliest axis){}", turns,
+                  turns < kFastest ? "" : ": degrees per second?"));
   if (rig_ && rig_->vehicle && imu.gravity > 0.0) {
     const double tilt = std::acos(imu.quiet_accel_vehicle.z() / imu.gravity);
     constexpr double kMaxTilt = 0.26;  // 15 degrees: more than any ramp
@@ -222,11 +254,19 @@ void Describer::describeFrames() {
   const double early = toSeconds(imu.start_ns - stamps.front());
   const double late = toSeconds(stamps.back() - imu.end_ns);
   const bool covered = early <= 0.0 && late <= 0.0;
-  add(covered ? CheckMark::kPass : CheckMark::kWarn, "imu0 covers images",
+  const bool apart = imu.end_ns < stamps.front() || imu.start_ns > stamps.back();
+  add(covered ? CheckMark::kPass
+      : apart ? CheckMark::kFail
+              : CheckMark::kWarn,
+      "imu0 covers images",
       covered ? "yes"
-              : fmt::format("images run {:.3f} s ahead of the first and {:.3f} s behind the last "
-                            "sample",
-                            std::max(0.0, early), std::max(0.0, late)));
+      : apart
+          ? fmt::format("not one: samples from {} to {}, images from {} to {} ns: another unit, "
+                        "or another clock?",
+                        imu.start_ns, imu.end_ns, stamps.front(), stamps.back())
+          : fmt::format("images run {:.3f} s ahead of the first and {:.3f} s behind the last "
+                        "sample",
+                        std::max(0.0, early), std::max(0.0, late)));
 }
 
 // Decodes the first image of every camera, or all.

@@ -54,9 +54,11 @@ void Database::fail(const std::string& doing) const {
 }
 
 void Database::execute(const std::string& sql) {
-  if (sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) {
-    fail("not a readable map (" + sql.substr(0, 40) + ")");
+  const int code = sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr) & 0xff;
+  if (code == SQLITE_FULL || code == SQLITE_READONLY || code == SQLITE_IOERR) {
+    fail("cannot be written");
   }
+  if (code != SQLITE_OK) fail("not a readable map (" + sql.substr(0, 40) + ")");
 }
 
 Statement::Statement(const Database& database, const std::string& sql) : database_(database) {
