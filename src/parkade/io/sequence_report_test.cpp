@@ -133,6 +133,50 @@ TEST(SequenceReport, AnAccelerometerWithoutGravityIsSuspect) {
   EXPECT_FALSE(report->failed());
 }
 
+TEST(SequenceReport, DegreesPerSecondAreSuspect) {
+  const TemporaryFolder folder;
+  std::vector<SensorEvent> events = restingEvents();
+  int k = 0;
+  for (SensorEvent& event : events) {
+    if (auto* imu = std::get_if<ImuSample>(&event)) imu->gyro.z() = ++k % 40 < 20 ? 17.0 : -17.0;
+  }
+  test::writeEvents(folder.path(), events, test::lossless());
+  EXPECT_EQ(find(*describeSequence(folder.path()), "gyroscope")->mark, CheckMark::kWarn);
+}
+
+TEST(SequenceReport, AnotherClockFailsAndTheLastStampThereIsHangsNothing) {
+  const TemporaryFolder folder;
+  std::vector<SensorEvent> events = restingEvents();
+  for (SensorEvent& event : events) {
+    if (auto* imu = std::get_if<ImuSample>(&event)) imu->t_ns /= 1000;  // microseconds
+  }
+  test::writeEvents(folder.path(), restingEvents(), test::lossless());
+  std::string text = "#t,gx,gy,gz,ax,ay,az\n";
+  for (const SensorEvent& event : events) {
+    const auto* imu = std::get_if<ImuSample>(&event);
+    if (imu != nullptr) text += std::to_string(imu->t_ns) + ",0,0,0,0,0,9.81\n";
+  }
+  folder.write("mav0/imu0/data.csv", text);
+  const auto report = describeSequence(folder.path());
+  EXPECT_EQ(find(*report, "imu0 covers images")->mark, CheckMark::kFail);
+  folder.write("mav0/imu0/data.csv", text + "9223372036854775807,0,0,0,0,0,9.81\n");
+  EXPECT_TRUE(describeSequence(folder.path()).ok());
+}
+
+TEST(SequenceReport, MasksAndMountingsAreJudged) {
+  const TemporaryFolder folder;
+  Rig rig = test::smallRig();
+  rig.cameras[0].T_vehicle_cam = SE3(SO3(), {1000.0, 0.0, 500.0});  // millimetres
+  test::writeEvents(folder.path(), restingEvents(), test::lossless(), rig);
+  EXPECT_EQ(find(*describeSequence(folder.path()), "cam0 mounting")->mark, CheckMark::kWarn);
+  rig.cameras[1].mask_path = folder.path() + "/none.png";
+  ASSERT_TRUE(writeRig(rig, folder.path() + "/rig.yaml"));
+  EXPECT_EQ(find(*describeSequence(folder.path()), "cam1 mask")->mark, CheckMark::kFail);
+  ASSERT_TRUE(writeImage(folder.path() + "/none.png", cv::Mat(24, 32, CV_8UC1, cv::Scalar(255))));
+  EXPECT_THAT(find(*describeSequence(folder.path()), "cam1 mask")->detail,
+              HasSubstr("32 x 24 px, the calibration is for 64 x 48"));
+}
+
 TEST(SequenceReport, TheBrokenLogIsCountedAndFails) {
   PARKADE_NEED_DATA(data);
   const TemporaryFolder folder;

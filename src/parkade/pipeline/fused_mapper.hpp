@@ -15,7 +15,7 @@
 namespace parkade {
 
 struct FusedMapperStatistics {
-  int registrations = 0;  ///< tried on submaps of this stretch
+  int registrations = 0;  ///< tried on submaps of this passage
   int accepted = 0;
   int revisits = 0;  ///< tried on submaps of an earlier one
   int loops = 0;     ///< of them, accepted

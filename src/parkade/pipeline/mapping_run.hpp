@@ -113,14 +113,15 @@ struct RunSummary {
   int frame_sets = 0;  ///< that poses were looked for in
   int poses = 0;
   double recorded_s = 0.0;    ///< between the first and the last frame set
-  double processing_s = 0.0;  ///< wall time in which tracking or estimation was at work
+  double processing_s = 0.0;  ///< wall time in which tracking, estimation or semantics were at work
   double reading_s = 0.0;     ///< wall time spent waiting for the source
   double wall_s = 0.0;
-  double mean_tracks = 0.0;         ///< observations per frame set
-  std::vector<StageTiming> stages;  ///< read, track, estimate, latency (frame set to pose)
-  std::vector<int> images;          ///< usable images per camera
-  int pictures_passed_over = 0;     ///< of these, what a live run took no time to map by
-  int frame_sets_passed_over = 0;   ///< beside these: a live run lagged behind
+  double mean_tracks = 0.0;  ///< observations per frame set
+  std::vector<StageTiming>
+      stages;                      ///< read, track, estimate, those of semantics, latency (to pose)
+  std::vector<int> images;         ///< usable images per camera
+  int pictures_passed_over = 0;    ///< of these, what a live run took no time to map by
+  int frame_sets_passed_over = 0;  ///< beside these: a live run lagged behind
 };
 
 /// The mapping run: source -> tracker -> estimator. The only owner of threads but for readers and
@@ -134,7 +135,7 @@ struct RunSummary {
 /// after it has come, so that the readings can be interpolated at its instant.
 class MappingRun {
  public:
-  /// Fails where the rig names a mask that cannot be read.
+  /// Fails where the rig names a mask that cannot be read, or a network is missing or does not fit.
   static Result<std::unique_ptr<MappingRun>> create(const Rig& rig, const PipelineOptions& options,
                                                     int threads,
                                                     RunMethod method = RunMethod::kVis);

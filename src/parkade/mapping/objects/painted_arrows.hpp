@@ -10,7 +10,7 @@ namespace parkade {
 /// as a whole does: a garage's arrows are painted alike. The looks of the arrows told are searched
 /// for where the layer of road markers holds paint of arrows; those found are told with no
 /// observations, those found and those told drawn whole in the cells that the layer knows.
-/// docs/math/grid.md, eqs. (8) and (9).
+/// docs/math/grid.md, eq. (8).
 void completeArrows(ParkingMap& map);
 
 }  // namespace parkade

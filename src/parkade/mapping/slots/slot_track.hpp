@@ -71,7 +71,7 @@ inline double logOdds(double p) {
 Seen toWorld(const SlotObservation& o, const SE2& T, double floor);
 
 /// What a look is worth by how well it tells the entrance's corners, where several readings of a
-/// place contradict each other: 1 at 3 cm, 0.36 at 8 cm (the end of a worn line passes for a
+/// place contradict each other: 1 at 3 cm, 0.38 at 8 cm (the end of a worn line passes for a
 /// corner).
 double sharpness(const Matrix4& covariance);
 
