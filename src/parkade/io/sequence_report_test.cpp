@@ -172,7 +172,10 @@ TEST(SequenceReport, MasksAndMountingsAreJudged) {
   rig.cameras[1].mask_path = folder.path() + "/none.png";
   ASSERT_TRUE(writeRig(rig, folder.path() + "/rig.yaml"));
   EXPECT_EQ(find(*describeSequence(folder.path()), "cam1 mask")->mark, CheckMark::kFail);
-  ASSERT_TRUE(writeImage(folder.path() + "/none.png", cv::Mat(24, 32, CV_8UC1, cv::Scalar(255))));
+  ImageEncoding png;
+  png.png = true;
+  const cv::Mat mask(24, 32, CV_8UC1, cv::Scalar(255));
+  ASSERT_TRUE(writeImage(folder.path() + "/none.png", mask, png));
   EXPECT_THAT(find(*describeSequence(folder.path()), "cam1 mask")->detail,
               HasSubstr("32 x 24 px, the calibration is for 64 x 48"));
 }
