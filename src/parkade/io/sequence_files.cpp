@@ -40,7 +40,10 @@ Result<std::string> findSequence(const std::string& path) {
   std::error_code code;
   if (!fs::exists(path, code)) return Error{fmt::format("{}: no such file or folder", path)};
   if (fs::is_directory(fs::path(path) / "mav0", code)) return path;
-  const fs::path clean = fs::absolute(path, code).lexically_normal() / "";  // "." and "a/" alike
+  fs::path clean = fs::path(path) / "";  // "a/mav0" and "a/mav0/" alike
+  if (clean.parent_path().filename() != "mav0") {
+    clean = fs::absolute(path, code).lexically_normal() / "";  // "." in it
+  }
   if (clean.parent_path().filename() == "mav0" && fs::is_directory(clean, code)) {
     const std::string parent = clean.parent_path().parent_path().string();
     return parent.empty() ? std::string(".") : parent;
