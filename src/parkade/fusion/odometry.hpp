@@ -12,12 +12,12 @@ namespace parkade {
 
 /// How the visual-inertial odometry errs between two frame sets, at least.
 struct OdometryNoiseOptions {
-  double translation = 0.00065;
-  double yaw_deg = 0.002;
-  double height = 0.00105;
+  double translation = 0.00052;
+  double yaw_deg = 0.0016;
+  double height = 0.00085;
   double standing = 0.0004;
   double degraded_factor = 5.0;
-  double told_share = 0.1;
+  double told_share = 0.065;
 
   void visit(OptionVisitor& v) {
     v.field("translation", translation, "m/sqrt(m)", "Drift of the place, a random walk.", 1e-5,

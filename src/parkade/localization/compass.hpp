@@ -19,7 +19,7 @@ struct CompassOptions {
   double min_share = 0.5;
   double reference_m = 10.0;
   double reference_sigma_deg = 1.0;
-  double sigma_deg = 0.185;
+  double sigma_deg = 0.15;
 
   void visit(OptionVisitor& v) {
     v.field("enable", enable, "Take the rows of a garage for parallel or square to each other.");

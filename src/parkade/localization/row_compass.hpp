@@ -22,7 +22,7 @@ struct RowCompassOptions {
   double search_deg = 0.8;
   double min_excess = 80.0;
   double min_contrast = 2.0;
-  double sigma_deg = 0.026;
+  double sigma_deg = 0.021;
   double doubling_excess = 300.0;
 
   void visit(OptionVisitor& v) {

@@ -24,12 +24,12 @@ struct SubmapOptions {
   double min_age_m = 3.0;
   double revisit_age_m = 30.0;
   double register_distance_m = 1.0;
-  double passage_sigma_m = 0.019;
+  double passage_sigma_m = 0.0153;
   double sigma_m = 0.008;
   double sigma_deg = 0.048;
   double doubling_distance_m = 5.0;
   double gate_probability = 0.999;
-  double height_sigma_m = 0.019;
+  double height_sigma_m = 0.0153;
   int max_anchors = 160;
 
   void visit(OptionVisitor& v) {
