@@ -153,23 +153,25 @@ std::string writeRigNode(const Rig& rig, const std::string& path) {
   return text;
 }
 
-}  // namespace
-
-Result<Rig> readRig(const std::string& path) {
-  const Result<YamlNode> root = openYaml(path);
-  if (!root) return root.error();
-  if (root->isMap() && root->has("cam0")) return readKalibr(path, kalibrImuFile(path));
-  return parseYamlFile<Rig>(path, readRigNode);
-}
-
-Result<Rig> parseRig(const std::string& text, const std::string& path) {
-  const Result<YamlNode> root = openYamlText(text, path);
+Result<Rig> rigOf(const Result<YamlNode>& root) {
   if (!root) return root.error();
   try {
     return readRigNode(*root);
   } catch (const YamlError& error) {
     return Error{error.what()};
   }
+}
+
+}  // namespace
+
+Result<Rig> readRig(const std::string& path) {
+  const Result<YamlNode> root = openYaml(path);
+  const bool is_kalibr = root && root->isMap() && root->has("cam0");
+  return is_kalibr ? readKalibr(path, kalibrImuFile(path)) : rigOf(root);
+}
+
+Result<Rig> parseRig(const std::string& text, const std::string& path) {
+  return rigOf(openYamlText(text, path));
 }
 
 // Whole or not at all: under another name first.

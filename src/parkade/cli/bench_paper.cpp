@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Parkade authors
 // SPDX-License-Identifier: Apache-2.0
 #include "parkade/cli/bench_paper.hpp"
-#include "parkade/cli/output_folder.hpp"
 
 #include <fmt/core.h>
-#include <filesystem>
 
 #include <chrono>
+#include <filesystem>
 #include <map>
 #include <set>
 
@@ -14,6 +13,7 @@
 #include "parkade/cli/bench_report.hpp"
 #include "parkade/cli/bench_runs.hpp"
 #include "parkade/cli/option_checks.hpp"
+#include "parkade/cli/output_folder.hpp"
 #include "parkade/cli/sim_record.hpp"
 #include "parkade/core/json_text.hpp"
 #include "parkade/io/file.hpp"
@@ -167,13 +167,14 @@ Status writeAll(const PaperBenchOptions& options, const BenchPlan& plan,
 }
 
 // A folder misspelt would cost hours of drawing.
-Status checkSequences(const PaperBenchOptions& options, const BenchPlan& plan) {
+Status checkSequences(const PaperBenchOptions& options, const BenchPlan& plan,
+                      const std::vector<std::string>& given) {
   if (options.sequences.empty()) return {};
   std::error_code code;
   if (!std::filesystem::is_directory(options.sequences, code)) {
     return Error{fmt::format("bench: --sequences {}: no such folder", options.sequences)};
   }
-  if (givenDrives(options, plan).empty()) {
+  if (given.empty()) {
     return Error{fmt::format(
         "bench: --sequences {}: holds no whole recording that is asked for, as {}; without "
         "--sequences all are drawn",
@@ -191,10 +192,11 @@ int runPaperBench(PaperBenchOptions options) {
   if (options.quick) makeQuick(options);
   const Result<BenchPlan> plan = planBench(options);
   if (!plan) return failUsage(plan.error());
-  if (Status given = checkSequences(options, *plan); !given) return failUsage(given.error());
-  if (Status made = makeWritable(options.out); !made) return fail(made.error());
   // Before anything is drawn, perhaps into the same folder.
-  const std::string setting = settingText(options, *plan, givenDrives(options, *plan));
+  const std::vector<std::string> given = givenDrives(options, *plan);
+  if (Status fit = checkSequences(options, *plan, given); !fit) return failUsage(fit.error());
+  if (Status made = makeWritable(options.out); !made) return fail(made.error());
+  const std::string setting = settingText(options, *plan, given);
   const std::vector<JudgedRun> runs = performAll(options, *plan);
   if (Status written = writeAll(options, *plan, runs, setting); !written) {
     return fail(written.error());

@@ -13,6 +13,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "parkade/cli/interruption.hpp"
 #include "parkade/io/file.hpp"
 
 namespace parkade::cli {
@@ -32,27 +33,9 @@ volatile std::sig_atomic_t running_child = 0;
 
 // Ends the child too, which writes what it has, and then this program as if nobody had listened.
 void passOn(int signal) {
-  if (running_child != 0) kill(static_cast<pid_t>(running_child), signal);
-  std::signal(signal, SIG_DFL);
+  kill(static_cast<pid_t>(running_child), signal);
   std::raise(signal);
 }
-
-/// While one lives, who ends this program ends the child as well.
-class SignalsPassedOn {
- public:
-  explicit SignalsPassedOn(pid_t child) {
-    running_child = child;
-    std::signal(SIGTERM, passOn);
-    std::signal(SIGINT, passOn);
-  }
-  ~SignalsPassedOn() {
-    std::signal(SIGTERM, SIG_DFL);
-    std::signal(SIGINT, SIG_DFL);
-    running_child = 0;
-  }
-  SignalsPassedOn(const SignalsPassedOn&) = delete;
-  SignalsPassedOn& operator=(const SignalsPassedOn&) = delete;
-};
 
 }  // namespace
 
@@ -81,7 +64,8 @@ Status runProgram(const std::vector<std::string>& arguments, const std::string& 
   if (error != 0) {
     return Error{fmt::format("{}: cannot be started: {}", words.front(), std::strerror(error))};
   }
-  const SignalsPassedOn passed_on(child);
+  running_child = child;
+  const HandledSignals passed_on(passOn);
   int status = 0;
   while (waitpid(child, &status, 0) < 0) {
     if (errno != EINTR) {

@@ -37,18 +37,19 @@ class InterruptibleSource : public SensorSource {
 
 }  // namespace
 
-Interruption::Interruption() {
-  noted = 0;
+HandledSignals::HandledSignals(void (*handler)(int)) {
   struct sigaction action = {};
-  action.sa_handler = note;
+  action.sa_handler = handler;
   action.sa_flags = static_cast<int>(SA_RESETHAND);  // the next one ends the program
   sigemptyset(&action.sa_mask);
   for (const int signal : kSignals) sigaction(signal, &action, nullptr);
 }
 
-Interruption::~Interruption() {
+HandledSignals::~HandledSignals() {
   for (const int signal : kSignals) std::signal(signal, SIG_DFL);
 }
+
+Interruption::Interruption() : handled_(note) {}
 
 int Interruption::signal() {
   return noted;

@@ -8,17 +8,26 @@
 
 namespace parkade::cli {
 
-/// While one lives, the first SIGINT or SIGTERM is noted instead of ending the program; a second
-/// one ends it.
+/// While one lives, the first SIGINT and the first SIGTERM go to a handler; a second one ends the
+/// program.
+class HandledSignals {
+ public:
+  explicit HandledSignals(void (*handler)(int));
+  ~HandledSignals();
+  HandledSignals(const HandledSignals&) = delete;
+  HandledSignals& operator=(const HandledSignals&) = delete;
+};
+
+/// While one lives, the first SIGINT or SIGTERM is noted instead of ending the program.
 class Interruption {
  public:
   Interruption();
-  ~Interruption();
-  Interruption(const Interruption&) = delete;
-  Interruption& operator=(const Interruption&) = delete;
 
   /// The signal that came; 0: none.
   [[nodiscard]] static int signal();
+
+ private:
+  HandledSignals handled_;
 };
 
 /// A source that ends with an Error once an Interruption has noted a signal: what was done until

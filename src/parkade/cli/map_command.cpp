@@ -229,15 +229,7 @@ Status mergeMaps(const MapArguments& arguments) {
         fmt::format("{} into {}: {}", arguments.later, arguments.path, report.error().message)};
   }
   const std::string out = mapFileOf(arguments.out);
-  std::error_code code;
-  const bool is_new = !std::filesystem::exists(out, code);
-  {
-    Result<MapFile> file = MapFile::open(out);
-    const Status status = file ? file->save(*saved) : Status(file.error());
-    // What was made for nothing must not pass for a map.
-    if (!status && is_new) std::filesystem::remove(out, code);
-    if (!status) return status;
-  }
+  if (Status written = saveMap(*saved, out); !written) return written;
   const std::string gone =
       report->objects_gone > 0
           ? fmt::format(", {} gone, for bare floor was seen there", report->objects_gone)

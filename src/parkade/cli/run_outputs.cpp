@@ -181,9 +181,7 @@ Status writeLearnedRig(const std::string& folder, const RunDescription& descript
 Status writeMap(const std::string& folder, const std::string& name, const MappingRun& run) {
   if (run.mapper() == nullptr) return {};
   ParkingMap map = run.mapper()->map(name);
-  Result<MapFile> file = MapFile::open(joinPath(folder, "map.db"));
-  if (!file) return file.error();
-  if (Status saved = file->save(map); !saved) return saved;
+  if (Status saved = saveMap(map, joinPath(folder, "map.db")); !saved) return saved;
   const std::string exports = joinPath(folder, "map");
   if (Status made = makeFolders(exports); !made) return made;
   for (const GridLayer layer : kGridLayers) {

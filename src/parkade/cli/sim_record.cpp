@@ -98,16 +98,15 @@ class Recorder {
 
   // A complete recording is not drawn again for what it lacks.
   [[nodiscard]] Status holdsWhatIsAsked() const {
-    const auto lacks = [&](bool asked, const char* part) {
-      return asked && simulation_->spec().images && !exists(joinPath(options_.out, part));
-    };
-    const char* missing = lacks(options_.labels, "truth/labels")           ? "truth/labels"
-                          : lacks(options_.bev_labels, "truth/bev_labels") ? "truth/bev_labels"
-                                                                           : nullptr;
-    if (missing == nullptr) return {};
-    return Error{fmt::format(
-        "{}: the recording is complete, without {}; draw it anew with --force, or elsewhere",
-        options_.out, missing)};
+    if (!simulation_->spec().images) return {};
+    for (const auto& [asked, part] : {std::pair(options_.labels, "truth/labels"),
+                                      std::pair(options_.bev_labels, "truth/bev_labels")}) {
+      if (!asked || exists(joinPath(options_.out, part))) continue;
+      return Error{fmt::format(
+          "{}: the recording is complete, without {}; draw it anew with --force, or elsewhere",
+          options_.out, part)};
+    }
+    return {};
   }
 
   // Only what a recording consists of: the folder may hold notes of its user.

@@ -254,19 +254,17 @@ void Describer::describeFrames() {
   const double early = toSeconds(imu.start_ns - stamps.front());
   const double late = toSeconds(stamps.back() - imu.end_ns);
   const bool covered = early <= 0.0 && late <= 0.0;
-  const bool apart = imu.end_ns < stamps.front() || imu.start_ns > stamps.back();
-  add(covered ? CheckMark::kPass
-      : apart ? CheckMark::kFail
-              : CheckMark::kWarn,
-      "imu0 covers images",
-      covered ? "yes"
-      : apart
-          ? fmt::format("not one: samples from {} to {}, images from {} to {} ns: another unit, "
-                        "or another clock?",
-                        imu.start_ns, imu.end_ns, stamps.front(), stamps.back())
-          : fmt::format("images run {:.3f} s ahead of the first and {:.3f} s behind the last "
-                        "sample",
-                        std::max(0.0, early), std::max(0.0, late)));
+  const std::string name = "imu0 covers images";
+  if (covered) return add(CheckMark::kPass, name, "yes");
+  if (imu.end_ns < stamps.front() || imu.start_ns > stamps.back()) {
+    return add(CheckMark::kFail, name,
+               fmt::format("not one: samples from {} to {}, images from {} to {} ns: another unit, "
+                           "or another clock?",
+                           imu.start_ns, imu.end_ns, stamps.front(), stamps.back()));
+  }
+  add(CheckMark::kWarn, name,
+      fmt::format("images run {:.3f} s ahead of the first and {:.3f} s behind the last sample",
+                  std::max(0.0, early), std::max(0.0, late)));
 }
 
 // Decodes the first image of every camera, or all.

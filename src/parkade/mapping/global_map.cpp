@@ -4,6 +4,7 @@
 
 #include <zstd.h>
 
+#include <algorithm>
 #include <optional>
 #include <unordered_map>
 
@@ -110,7 +111,6 @@ struct GlobalMap::Impl {
   std::optional<SE2> last_pose;  // in the map, of the last picture entered
   std::optional<SE2> last_view;  // and of the last that entered all layers
   TimeNs last_t_ns = 0;
-  std::size_t standing = 0;  // newest pictures that show nothing but what moves
 };
 
 bool GlobalMap::Impl::movedFrom(const std::optional<SE2>& before, const SE2& T_map_vehicle) const {
@@ -176,12 +176,13 @@ void GlobalMap::Impl::rebuildSome(std::size_t count) {
 // hours.
 void GlobalMap::Impl::keep(PackedPicture picture) {
   constexpr std::size_t kOfAStand = 5;
-  standing = picture.new_view ? 0 : standing + 1;
   pictures.push_back(std::move(picture));
-  if (standing <= kOfAStand) return;
-  const std::size_t oldest = pictures.size() - standing;
-  pictures.erase(pictures.begin() + static_cast<std::ptrdiff_t>(oldest));
-  --standing;
+  if (pictures.size() <= kOfAStand) return;
+  const std::size_t oldest = pictures.size() - 1 - kOfAStand;
+  const auto at = pictures.begin() + static_cast<std::ptrdiff_t>(oldest);
+  const auto shows_new = [](const PackedPicture& each) { return each.new_view; };
+  if (std::any_of(at, pictures.end(), shows_new)) return;
+  pictures.erase(at);
   if (next_grid && next_picture > oldest) --next_picture;
 }
 

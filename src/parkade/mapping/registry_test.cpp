@@ -255,20 +255,24 @@ TEST(SlotRegistry, OfTwoReadingsOfAPlaceTheOneSeenMoreOftenIsTold) {
   EXPECT_NEAR(slots[0].corners[1].x(), 4.5, 0.02);
 }
 
-TEST(SlotRegistry, WhereTheCarDroveUnheardNobodyKnows) {
+// A slot along the aisle y = 0, as seen from a pose.
+SlotObservation besideTheAisle(const SE2& pose) {
   SlotObservation o;
   o.corners = {Eigen::Vector2d(2, 2), Eigen::Vector2d(4.5, 2), Eigen::Vector2d(4.5, 7),
                Eigen::Vector2d(2, 7)};
   o.entrance_covariance = 1e-3 * Eigen::Matrix4d::Identity();
   o.confidence = 0.9;
+  for (Eigen::Vector2d& p : o.corners) p = pose.inverse() * p;
+  return o;
+}
+
+TEST(SlotRegistry, WhereTheCarDroveUnheardNobodyKnows) {
   // Along the aisle, then around a corner without a picture for so many metres' chord.
   const auto told = [&](const std::vector<SE2>& way) {
     SlotRegistry registry({});
     TimeNs t_ns = 0;
     for (const SE2& pose : way) {
-      SlotObservation seen = o;
-      for (Eigen::Vector2d& p : seen.corners) p = pose.inverse() * p;
-      registry.update({seen}, t_ns += kTick, pose, 0);
+      registry.update({besideTheAisle(pose)}, t_ns += kTick, pose, 0);
     }
     return registry.slots(t_ns).size();
   };
@@ -286,19 +290,12 @@ TEST(SlotRegistry, WhereTheCarDroveUnheardNobodyKnows) {
 }
 
 TEST(SlotRegistry, NoSlotWhereTheCarDroveThroughOrDriversMarksLie) {
-  SlotObservation o;
-  o.corners = {Eigen::Vector2d(2, 2), Eigen::Vector2d(4.5, 2), Eigen::Vector2d(4.5, 7),
-               Eigen::Vector2d(2, 7)};
-  o.entrance_covariance = 1e-3 * Eigen::Matrix4d::Identity();
-  o.confidence = 0.9;
   const auto told = [&](const SE2& from, const SE2& to, const std::vector<MapObject>& objects) {
     SlotRegistry registry({});
     for (int k = 0; k <= 40; ++k) {
       const SE2 pose(from.angle(),
                      from.translation() + k / 40.0 * (to.translation() - from.translation()));
-      SlotObservation seen = o;
-      for (Eigen::Vector2d& p : seen.corners) p = pose.inverse() * p;
-      registry.update({seen}, k * kTick, pose, 0);
+      registry.update({besideTheAisle(pose)}, k * kTick, pose, 0);
     }
     return registry.slots(0, objects).size();
   };

@@ -116,12 +116,11 @@ struct RunSummary {
   double processing_s = 0.0;  ///< wall time in which tracking, estimation or semantics were at work
   double reading_s = 0.0;     ///< wall time spent waiting for the source
   double wall_s = 0.0;
-  double mean_tracks = 0.0;  ///< observations per frame set
-  std::vector<StageTiming>
-      stages;                      ///< read, track, estimate, those of semantics, latency (to pose)
-  std::vector<int> images;         ///< usable images per camera
-  int pictures_passed_over = 0;    ///< of these, what a live run took no time to map by
-  int frame_sets_passed_over = 0;  ///< beside these: a live run lagged behind
+  double mean_tracks = 0.0;         ///< observations per frame set
+  std::vector<StageTiming> stages;  ///< in their order; the last: latency, frame set to pose
+  std::vector<int> images;          ///< usable images per camera
+  int pictures_passed_over = 0;     ///< of these, what a live run took no time to map by
+  int frame_sets_passed_over = 0;   ///< beside these: a live run lagged behind
 };
 
 /// The mapping run: source -> tracker -> estimator. The only owner of threads but for readers and

@@ -178,6 +178,18 @@ Status MapFile::save(ParkingMap& map) {
   }
 }
 
+Status saveMap(ParkingMap& map, const std::string& path) {
+  std::error_code code;
+  const bool is_new = !std::filesystem::exists(path, code);
+  Status saved;
+  {
+    Result<MapFile> file = MapFile::open(path);
+    saved = file ? file->save(map) : Status(file.error());
+  }
+  if (!saved && is_new) std::filesystem::remove(path, code);
+  return saved;
+}
+
 Result<ParkingMap> loadMap(const std::string& path) {
   std::error_code code;
   if (!std::filesystem::is_regular_file(path, code)) {

@@ -39,6 +39,10 @@ class MapFile {
 /// file's tiles do unpacked (a uniform one of 8 KB takes some 20 bytes of it).
 Result<ParkingMap> loadMap(const std::string& path);
 
+/// Writes a map into a new file, or over the one that is there. Where that fails, an old file is as
+/// it was, and no new one is left to pass for an empty map.
+Status saveMap(ParkingMap& map, const std::string& path);
+
 /// Walks every page and index of the file, as loading does not. Fails with what is damaged.
 Status checkIntegrity(const std::string& path);
 
