@@ -7,6 +7,7 @@ import csv
 import json
 import os
 import pathlib
+import resource
 import shutil
 import signal
 import subprocess
@@ -38,6 +39,12 @@ def old_run(folder):
     for name in ["trajectory.tum", "map.db", "map/map.png", "notes.txt"]:
         (folder / name).write_text("old " + name, encoding="utf-8")
     return contents(folder)
+
+
+def full_disk():
+    """In a child: files that grow beyond 20 kB cannot be written."""
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
 
 
 def contents(folder):
@@ -211,13 +218,17 @@ class RunEurocTest(unittest.TestCase):
     def test_one_camera_will_do_and_pictures_are_drawn(self):
         mono = self.folder / "mono"
         pictures = self.folder / "pictures"
+        pictures.mkdir()
+        for name in ["999999.jpg", "notes.jpg"]:
+            (pictures / name).write_text("of a longer run", encoding="utf-8")
         result = parkade(
             "run", EUROC, "--out", mono, "--cameras", "cam0", "--duration", 7,
-            "--debug-images", pictures,
+            "--debug-images", pictures, "--force",
         )  # fmt: skip
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertLess(self.evaluate(mono)["ape"]["rmse"], 0.03)
         drawn = sorted(pictures.iterdir())
+        self.assertEqual(drawn.pop().name, "notes.jpg")
         self.assertEqual(drawn[0].name, "000000.jpg")
         with open(mono / "health.csv", encoding="utf-8") as file:
             self.assertEqual(len(drawn), len(list(csv.DictReader(file))))
@@ -275,6 +286,37 @@ class RunEurocTest(unittest.TestCase):
         self.assertEqual(now["notes.txt"], b"old notes.txt")
         self.assertNotEqual(now["trajectory.tum"], b"old trajectory.tum")
         self.assertIn(b"source:", now["config.yaml"])
+        self.assertFalse((out / "unfinished").exists())
+
+    def test_what_cannot_be_written_costs_no_earlier_results(self):
+        out = self.folder / "kept"
+        before = old_run(out)
+        result = subprocess.run(
+            [PARKADE, "run", EUROC, "--out", out, "--duration", "7", "--force"],
+            capture_output=True, text=True, timeout=600, preexec_fn=full_disk,
+        )  # fmt: skip
+        self.assertEqual(result.returncode, 1)
+        for word in ["File too large", f"earlier run stay in {out}", f"is in {out}/unfinished"]:
+            self.assertIn(word, result.stderr)
+        after = contents(out)
+        self.assertEqual({name: after[name] for name in before}, before)
+        again = parkade("run", EUROC, "--out", out, "--duration", 7, "--force")
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertFalse((out / "unfinished").exists())
+        self.assertNotEqual(contents(out)["trajectory.tum"], before["trajectory.tum"])
+
+    def test_two_runs_do_not_write_into_one_folder(self):
+        out = self.folder / "shared"
+        first = subprocess.Popen(
+            [PARKADE, "run", EUROC, "--out", out, "--real-time"],
+            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+        )  # fmt: skip
+        next(line for line in first.stderr if "%" in line)
+        second = parkade("run", EUROC, "--out", out)
+        first.kill()
+        first.communicate(timeout=60)
+        self.assertEqual(second.returncode, 1)
+        self.assertIn(f"{out}: another run writes into this folder", second.stderr)
 
     def interrupt(self, out, *more, how=signal.SIGINT, from_percent=0):
         # A shell's background jobs ignore interruptions by the keyboard.

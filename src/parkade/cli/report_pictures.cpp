@@ -76,12 +76,8 @@ int movingOf(const SemanticFrame& features) {
 
 }  // namespace
 
-ReportPictures::ReportPictures(std::string folder, Rig rig, TimeNs begin_ns, TimeNs end_ns,
-                               bool semantics)
-    : folder_(std::move(folder)),
-      rig_(std::move(rig)),
-      middle_ns_(begin_ns + (end_ns - begin_ns) / 2),
-      semantics_(semantics) {}
+ReportPictures::ReportPictures(Rig rig, TimeNs begin_ns, TimeNs end_ns, bool semantics)
+    : rig_(std::move(rig)), middle_ns_(begin_ns + (end_ns - begin_ns) / 2), semantics_(semantics) {}
 
 void ReportPictures::onTracks(const TracksEvent& event) {
   if (!tracks_.empty()) return;
@@ -127,8 +123,8 @@ void ReportPictures::stitch(const FrameSet& frames) {
   stitched_ = stitcher.stitch(frames).image;
 }
 
-Status ReportPictures::finish() {
-  Status status = makeFolders(joinPath(folder_, "pictures"));
+Status ReportPictures::write(const std::string& folder) const {
+  Status status = makeFolders(joinPath(folder, "pictures"));
   ImageEncoding jpeg;
   jpeg.jpeg_quality = 80;
   ImageEncoding png;
@@ -143,12 +139,12 @@ Status ReportPictures::finish() {
     if (!status || picture->empty()) continue;
     const bool lossless = std::string_view(name).ends_with(".png");
     status =
-        writeImage(joinPath(joinPath(folder_, "pictures"), name), *picture, lossless ? png : jpeg);
+        writeImage(joinPath(joinPath(folder, "pictures"), name), *picture, lossless ? png : jpeg);
   }
   if (!status) return status;
   const Json json{
       {"features", features_json_}, {"local_map", local_json_}, {"local_moving", moving_json_}};
-  return writeFileAtomic(joinPath(folder_, "pictures/pictures.json"), json.dump(2) + "\n");
+  return writeFileAtomic(joinPath(folder, "pictures/pictures.json"), json.dump(2) + "\n");
 }
 
 }  // namespace parkade::cli

@@ -25,17 +25,16 @@ class ReportPictures : public PipelineObserver {
  public:
   /// begin_ns and end_ns: of the source, as far as known. semantics: the method labels pictures;
   /// the one on the ground is made here where it does not.
-  ReportPictures(std::string folder, Rig rig, TimeNs begin_ns, TimeNs end_ns, bool semantics);
+  ReportPictures(Rig rig, TimeNs begin_ns, TimeNs end_ns, bool semantics);
   void onTracks(const TracksEvent& event) override;
   void onFeatures(const FeaturesEvent& event) override;
   void onMap(const MapEvent& event) override;
-  /// Writes the pictures, after the run.
-  Status finish();
+  /// Writes the pictures below a run's folder, after the run.
+  [[nodiscard]] Status write(const std::string& folder) const;
 
  private:
   void stitch(const FrameSet& frames);
 
-  std::string folder_;
   Rig rig_;
   TimeNs middle_ns_;
   bool semantics_;

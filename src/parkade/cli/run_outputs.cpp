@@ -8,11 +8,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "parkade/cli/learned_rig.hpp"
 #include "parkade/cli/output_folder.hpp"
+#include "parkade/cli/run_folder.hpp"
 #include "parkade/core/json_text.hpp"
 #include "parkade/io/file.hpp"
 #include "parkade/io/image_file.hpp"
@@ -74,6 +76,20 @@ nlohmann::json metricsJson(const RunDescription& description, const MappingRun& 
   return json;
 }
 
+// Of an earlier run, which may have been longer.
+void removeTrackPictures(const std::string& folder) {
+  std::error_code code;
+  std::vector<std::filesystem::path> earlier;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, code)) {
+    const std::string name = entry.path().stem().string();
+    if (entry.path().extension() == ".jpg" && name.size() == 6 &&
+        name.find_first_not_of("0123456789") == std::string::npos) {
+      earlier.push_back(entry.path());
+    }
+  }
+  for (const std::filesystem::path& picture : earlier) std::filesystem::remove(picture, code);
+}
+
 }  // namespace
 
 std::string configText(const RunDescription& description) {
@@ -118,7 +134,9 @@ std::optional<double> HealthLog::startUpSeconds() const {
 }
 
 DebugImages::DebugImages(std::string folder, Rig rig)
-    : folder_(std::move(folder)), rig_(std::move(rig)), status_(makeWritable(folder_)) {}
+    : folder_(std::move(folder)), rig_(std::move(rig)), status_(makeWritable(folder_)) {
+  if (status_) removeTrackPictures(folder_);
+}
 
 void DebugImages::onTracks(const TracksEvent& event) {
   if (!status_) return;

@@ -32,8 +32,8 @@ class HealthLog : public PipelineObserver {
   std::optional<TimeNs> first_pose_t_ns_;
 };
 
-/// Draws every frame set's tracks into a folder, as NNNNNN.jpg. status() says from the start on
-/// whether that works.
+/// Draws every frame set's tracks into a folder, as NNNNNN.jpg, in place of those of an earlier
+/// run. status() says from the start on whether that works.
 class DebugImages : public PipelineObserver {
  public:
   DebugImages(std::string folder, Rig rig);
@@ -63,7 +63,7 @@ std::string configText(const RunDescription& description);
 /// Name and text of files.
 using RunTexts = std::vector<std::pair<std::string, std::string>>;
 
-/// health.csv, timing.json and metrics.json: made before the files of an earlier run go.
+/// health.csv, timing.json and metrics.json.
 RunTexts runTexts(const RunDescription& description, const MappingRun& run,
                   const HealthLog& health);
 

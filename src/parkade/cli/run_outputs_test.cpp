@@ -9,7 +9,6 @@
 namespace parkade::cli {
 namespace {
 
-// What throws here would do so after the files of an earlier run are gone.
 TEST(RunOutputs, TextsHoldPathsThatAreNoUtf8) {
   const Rig rig = test::smallRig();
   const auto run = MappingRun::create(rig, PipelineOptions{}, 1, RunMethod::kVis);
