@@ -19,6 +19,7 @@
 #include "parkade/core/json_text.hpp"
 #include "parkade/core/progress.hpp"
 #include "parkade/io/file.hpp"
+#include "parkade/io/rig_checks.hpp"
 #include "parkade/io/rig_report.hpp"
 #include "parkade/io/sequence_files.hpp"
 #include "parkade/io/sequence_report.hpp"
@@ -66,11 +67,12 @@ Status writeJson(const std::string& path, const nlohmann::json& json) {
 Result<int> describeRig(const InfoArguments& arguments) {
   const Result<Rig> rig = readRig(arguments.path);
   if (!rig) return rig.error();
-  fmt::print("{}", rigText(*rig));
+  const std::vector<Check> checks = checkRig(*rig);
+  fmt::print("{}{}", rigText(*rig), checksText(checks));
   if (const Status status = writeJson(arguments.json, rigJson(*rig)); !status) {
     return status.error();
   }
-  return 0;
+  return anyFailed(checks) ? 1 : 0;
 }
 
 Result<int> describeFolder(const InfoArguments& arguments) {

@@ -78,7 +78,7 @@ void warnOf(const SourceRequest& request) {
   if (request.spec.starts_with("sim:")) return;
   const Result<SequenceReport> report = describeSequence(request.spec);
   if (!report) return;  // the run says so itself
-  for (const SequenceCheck& check : report->checks) {
+  for (const Check& check : report->checks) {
     if (check.mark != CheckMark::kWarn) continue;
     logWarning("{}: {}: {}", request.spec, check.name, check.detail);
   }

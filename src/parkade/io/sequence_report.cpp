@@ -15,6 +15,7 @@
 #include "parkade/io/frame_join.hpp"
 #include "parkade/io/image_file.hpp"
 #include "parkade/io/ordered_prefetch.hpp"
+#include "parkade/io/rig_checks.hpp"
 #include "parkade/io/sequence_files.hpp"
 #include "parkade/io/trajectory_io.hpp"
 
@@ -50,7 +51,8 @@ class Describer {
     if (rig) {
       rig_ = std::move(*rig);
       add(CheckMark::kPass, "calibration", fmt::format("{} cameras, imu", rig_->cameras.size()));
-      judgeRig();
+      const std::vector<Check> checks = checkRig(*rig_);
+      report_.checks.insert(report_.checks.end(), checks.begin(), checks.end());
     } else {
       add(CheckMark::kFail, "calibration", rig.error().message);
     }
@@ -73,7 +75,6 @@ class Describer {
   void addRateCheck(const std::string& name, const StreamStatistics& stream, double expected_hz);
   void describeImu();
   void judgeImu(const ImuReport& imu);
-  void judgeRig();
   void describeCameras();
   void describeCamera(const RigCamera& camera);
   void describeFrames();
@@ -86,6 +87,7 @@ class Describer {
   const SequenceReportOptions& options_;
   SequenceReport report_;
   std::optional<Rig> rig_;
+  std::vector<ImuSample> imu_samples_;                 // in order
   std::vector<std::vector<TimeNs>> image_t_ns_;        // per camera, in order, on the IMU's clock
   std::vector<std::vector<std::string>> image_paths_;  // of files that are there
 };
@@ -118,31 +120,6 @@ void Describer::addRateCheck(const std::string& name, const StreamStatistics& st
       fmt::format("{:.4g} Hz, calibration says {:.4g} Hz", stream.rate_hz, expected_hz));
 }
 
-// What no car has, though a file may say so.
-void Describer::judgeRig() {
-  for (const RigCamera& camera : rig_->cameras) {
-    if (camera.mask_path.empty()) continue;
-    const Result<cv::Mat> mask = readImage(camera.mask_path, true);
-    if (!mask) {
-      add(CheckMark::kFail, camera.name + " mask", mask.error().message);
-    } else if (mask->cols != camera.camera.width() || mask->rows != camera.camera.height()) {
-      add(CheckMark::kFail, camera.name + " mask",
-          fmt::format("{}: {} x {} px, the calibration is for {} x {}", camera.mask_path,
-                      mask->cols, mask->rows, camera.camera.width(), camera.camera.height()));
-    }
-  }
-  if (!rig_->vehicle) return;
-  constexpr double kFurthest = 15.0;  // m
-  for (const RigCamera& camera : rig_->cameras) {
-    const Eigen::Vector3d& p = camera.T_vehicle_cam.translation();
-    if (p.z() > 0.0 && p.norm() < kFurthest) continue;
-    add(CheckMark::kWarn, camera.name + " mounting",
-        fmt::format("sits at ({:.4g}, {:.4g}, {:.4g}) m in the vehicle frame, {}: millimetres, or "
-                    "T_vehicle_cam the wrong way round?",
-                    p.x(), p.y(), p.z(), p.z() > 0.0 ? "far from the car" : "below the ground"));
-  }
-}
-
 void Describer::describeImu() {
   const Result<SensorTable<ImuSample>> table =
       readImuTable(joinPath(sensorFolder(sequence_, "imu0"), "data.csv"));
@@ -150,12 +127,11 @@ void Describer::describeImu() {
   ImuReport imu;
   const std::vector<TimeNs> stamps = table->stamps();
   imu.stream = streamStatistics(stamps);
-  std::vector<ImuSample> samples;
-  for (const std::size_t row : usableRows(stamps)) samples.push_back(table->rows[row]);
+  for (const std::size_t row : usableRows(stamps)) imu_samples_.push_back(table->rows[row]);
   addStampCheck("imu0", stamps, table->lines, imu.stream);
   if (rig_) addRateCheck("imu0", imu.stream, rig_->imu.rate_hz);
-  describeSamples(samples, rig_ ? rig_->imu.T_vehicle_imu.rotation() : SO3(), imu);
-  if (!samples.empty()) judgeImu(imu);
+  describeSamples(imu_samples_, rig_ ? rig_->imu.T_vehicle_imu.rotation() : SO3(), imu);
+  if (!imu_samples_.empty()) judgeImu(imu);
   report_.imu = imu;
 }
 
@@ -323,18 +299,12 @@ void Describer::describeWheel() {
   const std::vector<TimeNs> stamps = table->stamps();
   wheel.stream = streamStatistics(stamps);
   addStampCheck("wheel0", stamps, table->lines, wheel.stream);
-  TimeNs previous = 0;
-  for (const std::size_t row : usableRows(stamps)) {
-    const WheelSample& sample = table->rows[row];
-    wheel.has_steering = wheel.has_steering || std::isfinite(sample.steering_rad);
-    double speed = 0.5 * (sample.rear_left_mps + sample.rear_right_mps);
-    if (!std::isfinite(speed)) {
-      speed = std::isfinite(sample.rear_left_mps) ? sample.rear_left_mps : sample.rear_right_mps;
-    }
-    if (!std::isfinite(speed)) continue;
-    wheel.max_speed_mps = std::max(wheel.max_speed_mps, std::abs(speed));
-    if (previous != 0) wheel.distance_m += std::abs(speed) * toSeconds(sample.t_ns - previous);
-    previous = sample.t_ns;
+  std::vector<WheelSample> samples;
+  for (const std::size_t row : usableRows(stamps)) samples.push_back(table->rows[row]);
+  describeWheels(samples, wheel);
+  if (rig_ && rig_->vehicle) {
+    const auto unit = checkWheelUnit(samples, imu_samples_, rig_->imu.T_vehicle_imu.rotation());
+    if (unit) report_.checks.push_back(*unit);
   }
   report_.wheel = wheel;
 }
@@ -371,11 +341,6 @@ void Describer::describeSpan() {
 }
 
 }  // namespace
-
-bool SequenceReport::failed() const {
-  return std::any_of(checks.begin(), checks.end(),
-                     [](const SequenceCheck& check) { return check.mark == CheckMark::kFail; });
-}
 
 Result<SequenceReport> describeSequence(const std::string& path,
                                         const SequenceReportOptions& options) {

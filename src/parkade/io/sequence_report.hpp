@@ -10,19 +10,12 @@
 
 #include "parkade/core/progress.hpp"
 #include "parkade/core/result.hpp"
+#include "parkade/io/check.hpp"
 #include "parkade/io/imu_report.hpp"
 #include "parkade/io/stream_statistics.hpp"
+#include "parkade/io/wheel_report.hpp"
 
 namespace parkade {
-
-/// kWarn: readable, but look at it. kFail: a run would refuse the sequence.
-enum class CheckMark { kPass, kWarn, kFail };
-
-struct SequenceCheck {
-  CheckMark mark = CheckMark::kPass;
-  std::string name;
-  std::string detail;
-};
 
 struct CameraReport {
   std::string name;
@@ -32,13 +25,6 @@ struct CameraReport {
   StreamStatistics stream;     ///< stamps on the IMU's clock
   std::size_t missing = 0;     ///< listed files that are absent
   std::size_t unreadable = 0;  ///< with decode_images: of those present
-};
-
-struct WheelReport {
-  StreamStatistics stream;
-  double max_speed_mps = 0.0;  ///< mean of the rear wheels, magnitude
-  double distance_m = 0.0;     ///< sum of the speeds' magnitude
-  bool has_steering = false;
 };
 
 struct ReferenceReport {
@@ -60,9 +46,9 @@ struct SequenceReport {
   std::optional<ImuReport> imu;
   std::optional<WheelReport> wheel;
   std::optional<ReferenceReport> reference;
-  std::vector<SequenceCheck> checks;
+  std::vector<Check> checks;
 
-  [[nodiscard]] bool failed() const;
+  [[nodiscard]] bool failed() const { return anyFailed(checks); }
 };
 
 struct SequenceReportOptions {

@@ -17,8 +17,8 @@ using test::TemporaryFolder;
 using testing::AllOf;
 using testing::HasSubstr;
 
-const SequenceCheck* find(const SequenceReport& report, const std::string& name) {
-  for (const SequenceCheck& check : report.checks) {
+const Check* find(const SequenceReport& report, const std::string& name) {
+  for (const Check& check : report.checks) {
     if (check.name == name) return &check;
   }
   return nullptr;
@@ -199,7 +199,7 @@ TEST(SequenceReport, DescribesEuroc) {
   const auto report = describeSequence(data + "/euroc_mh01_16s");
   ASSERT_TRUE(report.ok()) << report.error().message;
   EXPECT_FALSE(report->failed());
-  for (const SequenceCheck& check : report->checks) {
+  for (const Check& check : report->checks) {
     // One instant of 320 was lost by the recorder.
     const bool gap = check.name == "cam0 gaps" || check.name == "cam1 gaps";
     EXPECT_EQ(static_cast<int>(check.mark), gap ? 1 : 0) << check.name << ": " << check.detail;

@@ -16,18 +16,6 @@ std::string vectorText(const Eigen::Vector3d& v) {
   return fmt::format("{:.4f} {:.4f} {:.4f}", v.x(), v.y(), v.z());
 }
 
-const char* nameOf(CheckMark mark) {
-  switch (mark) {
-    case CheckMark::kPass:
-      return "ok";
-    case CheckMark::kWarn:
-      return "warn";
-    case CheckMark::kFail:
-      return "FAIL";
-  }
-  return "?";
-}
-
 std::string gapText(const StreamStatistics& s) {
   if (s.gaps == 0) return "no gaps";
   return fmt::format("{} {} (up to {:.1f} ms)", s.gaps, s.gaps == 1 ? "gap" : "gaps",
@@ -98,17 +86,7 @@ std::string sequenceText(const SequenceReport& r) {
   } else {
     text += "  reference  none\n";
   }
-  text += "checks\n";
-  const auto count = [&r](CheckMark mark) {
-    return std::count_if(r.checks.begin(), r.checks.end(),
-                         [mark](const SequenceCheck& check) { return check.mark == mark; });
-  };
-  for (const SequenceCheck& check : r.checks) {
-    text += fmt::format("  {:<5} {:<19} {}\n", nameOf(check.mark), check.name, check.detail);
-  }
-  text += fmt::format("{} checks passed, {} warnings, {} failed\n", count(CheckMark::kPass),
-                      count(CheckMark::kWarn), count(CheckMark::kFail));
-  return text;
+  return text + checksText(r.checks);
 }
 
 nlohmann::json sequenceJson(const SequenceReport& r) {
@@ -158,9 +136,9 @@ nlohmann::json sequenceJson(const SequenceReport& r) {
                          {"duration_s", r.reference->duration_s},
                          {"length_m", r.reference->length_m}};
   }
-  for (const SequenceCheck& check : r.checks) {
+  for (const Check& check : r.checks) {
     json["checks"].push_back(
-        {{"mark", nameOf(check.mark)}, {"name", check.name}, {"detail", check.detail}});
+        {{"mark", toString(check.mark)}, {"name", check.name}, {"detail", check.detail}});
   }
   return json;
 }
