@@ -63,6 +63,7 @@ nlohmann::json metricsJson(const RunDescription& description, const MappingRun& 
   json["path_length_m"] = pathLength(run.trajectory());
   json["mean_tracks"] = summary.mean_tracks;
   json["images"] = summary.images;
+  json["pictures_repeated"] = summary.pictures_repeated;
   for (const Health h :
        {Health::kInitialising, Health::kTracking, Health::kDegraded, Health::kLost}) {
     json["health"][toString(h)] = health.frames(h);
@@ -230,6 +231,11 @@ std::string timingTable(const RunSummary& summary) {
     text += fmt::format(
         "the computer did not keep up: {} of {} frame sets were passed over by the semantic part\n",
         summary.pictures_passed_over, summary.frame_sets);
+  }
+  if (summary.pictures_repeated > 0) {
+    text += fmt::format(
+        "{} pictures were the camera's last one again though the car moved, and were left out\n",
+        summary.pictures_repeated);
   }
   if (summary.frame_sets_passed_over > 0) {
     text += fmt::format(

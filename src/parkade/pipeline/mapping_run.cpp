@@ -13,6 +13,7 @@
 #include "parkade/core/check.hpp"
 #include "parkade/pipeline/frame_packets.hpp"
 #include "parkade/pipeline/pace.hpp"
+#include "parkade/pipeline/repeated_pictures.hpp"
 #include "parkade/pipeline/semantic_parts.hpp"
 #include "parkade/pipeline/semantic_queue.hpp"
 #include "parkade/pipeline/thread_pool.hpp"
@@ -24,6 +25,28 @@ namespace {
 
 using Clock = BusyTime::Clock;
 
+// Between two frame sets, by the odometry's state and the inertial unit; far above what both say of
+// a car that stands.
+bool saysMotion(const MotionPrior& prior) {
+  constexpr double kMoved = 0.02;   // m
+  constexpr double kTurned = 5e-3;  // rad
+  if (!prior.valid) return false;
+  const SE3& T = prior.T_previous_current;
+  return (prior.translation_valid && T.translation().norm() > kMoved) ||
+         T.rotation().log().norm() > kTurned;
+}
+
+std::vector<std::string> namesOf(const Rig& rig) {
+  std::vector<std::string> names;
+  for (const RigCamera& camera : rig.cameras) names.push_back(camera.name);
+  return names;
+}
+
+bool hasPicture(const FrameSet& frames) {
+  return std::any_of(frames.images.begin(), frames.images.end(),
+                     [](const cv::Mat& image) { return !image.empty(); });
+}
+
 }  // namespace
 
 class MappingRun::Impl {
@@ -32,6 +55,7 @@ class MappingRun::Impl {
       : tracker(rig, options.tracking),
         estimator_(rig, options.vio),
         T_vehicle_imu_(rig.imu.T_vehicle_imu),
+        repeated_(namesOf(rig)),
         semantics_delay_(options.semantics_delay),
         pace_(options.pace),
         live_(options.live),
@@ -68,7 +92,7 @@ class MappingRun::Impl {
   };
 
   void process(FramePacket packet);
-  TrackSet track(const FramePacket& packet);
+  TrackSet track(FramePacket& packet);
   void finishEstimation();
   void settle();
   void estimate(Estimation& work);
@@ -85,6 +109,7 @@ class MappingRun::Impl {
   std::optional<TimeNs> last_t_ns_;
   TimeNs first_t_ns_ = 0;
   std::int64_t observations_ = 0;
+  RepeatedPictures repeated_;
   std::unique_ptr<Estimation> running_;
   StageClock read_clock_{"read"};
   StageClock track_clock_{"track"};
@@ -110,8 +135,11 @@ MotionPrior MappingRun::Impl::predict(const FramePacket& packet) {
   return turnByGyroscope(readings, T_vehicle_imu_, *last_t_ns_, now);
 }
 
-TrackSet MappingRun::Impl::track(const FramePacket& packet) {
+TrackSet MappingRun::Impl::track(FramePacket& packet) {
   TrackSet tracks;
+  const MotionPrior prior = reckoning == nullptr ? predict(packet) : MotionPrior{};
+  const bool moves = wheelsTurn(packet.wheel) || saysMotion(prior);
+  summary.pictures_repeated += repeated_.drop(packet.frames, moves);
   if (reckoning != nullptr) {
     tracks.t_ns = packet.frames.t_ns;
     for (std::size_t c = 0; c < packet.frames.images.size() && c < summary.images.size(); ++c) {
@@ -119,7 +147,6 @@ TrackSet MappingRun::Impl::track(const FramePacket& packet) {
     }
     return tracks;
   }
-  const MotionPrior prior = predict(packet);
   const Clock::time_point begin = Clock::now();
   tracks = tracker.track(packet.frames, prior);
   const Clock::time_point end = Clock::now();
@@ -193,6 +220,7 @@ void MappingRun::Impl::estimate(Estimation& work) {
 }
 
 void MappingRun::Impl::offerPictures(Estimation& work, const PoseEstimate& odometry_pose) {
+  if (!hasPicture(work.packet.frames)) return;
   const std::vector<Landmark> landmarks =
       reckoning != nullptr ? std::vector<Landmark>() : estimator_.landmarks();
   if (!semantics->wants(work.number, odometry_pose, landmarks)) return;

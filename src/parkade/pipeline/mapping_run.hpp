@@ -121,6 +121,7 @@ struct RunSummary {
   std::vector<int> images;          ///< usable images per camera
   int pictures_passed_over = 0;     ///< of these, what a live run took no time to map by
   int frame_sets_passed_over = 0;   ///< beside these: a live run lagged behind
+  int pictures_repeated = 0;        ///< of a camera that gave its last one again, left out
 };
 
 /// The mapping run: source -> tracker -> estimator. The only owner of threads but for readers and

@@ -55,14 +55,26 @@ class DotSource : public SensorSource {
     return std::optional<SensorEvent>(events_[next_++]);
   }
 
+  // The pictures of these instants become the one before them.
+  void freeze(double from_s, double to_s) {
+    cv::Mat last;
+    for (SensorEvent& event : events_) {
+      auto* frames = std::get_if<FrameSet>(&event);
+      if (frames == nullptr) continue;
+      const double t = toSeconds(frames->t_ns);
+      if (t < from_s) last = frames->images[0];
+      if (t >= from_s && t < to_s) frames->images[0] = last.clone();
+    }
+  }
+  [[nodiscard]] static Eigen::Vector3d positionAt(double t) {
+    return {0.3 * std::sin(1.5 * t), 0.4 * std::sin(2.0 * t), 0.2 * std::sin(2.5 * t)};
+  }
+
   Rig rig;
   std::size_t fail_at = 1'000'000;
   static constexpr double kSeconds = 2.5;
 
  private:
-  static Eigen::Vector3d positionAt(double t) {
-    return {0.3 * std::sin(1.5 * t), 0.4 * std::sin(2.0 * t), 0.2 * std::sin(2.5 * t)};
-  }
   ImuSample imuAt(TimeNs t_ns) const {
     const double t = toSeconds(t_ns);
     ImuSample sample;
@@ -139,6 +151,35 @@ TEST(MappingRun, SamePosesOnAnyNumberOfThreads) {
       EXPECT_EQ(poses[i].T_world_body.matrix(), reference[i].T_world_body.matrix()) << "pose " << i;
     }
   }
+}
+
+// Largest error of what the odometry says of the way since its first pose, m.
+double worstError(const Trajectory& poses) {
+  const StampedPose& first = poses.front();
+  const Eigen::Vector3d begin = DotSource::positionAt(toSeconds(first.t_ns));
+  double worst = 0.0;
+  for (const StampedPose& pose : poses) {
+    const Eigen::Vector3d moved = DotSource::positionAt(toSeconds(pose.t_ns)) - begin;
+    const SE3 told = first.T_world_body.inverse() * pose.T_world_body;
+    worst = std::max(worst, (told.translation() - moved).norm());
+  }
+  return worst;
+}
+
+TEST(MappingRun, PicturesThatStandStillDoNotHoldACarThatMoves) {
+  double worst[2] = {};
+  for (const bool frozen : {false, true}) {
+    DotSource source;
+    if (frozen) source.freeze(1.6, 2.1);
+    auto run = MappingRun::create(source.rig, {}, 1);
+    ASSERT_TRUE(run.ok());
+    ASSERT_TRUE((*run)->run(source).ok());
+    EXPECT_EQ((*run)->summary().pictures_repeated, frozen ? 5 : 0);
+    EXPECT_EQ((*run)->summary().images[0], frozen ? 20 : 25);
+    worst[frozen ? 1 : 0] = worstError((*run)->odometry());
+  }
+  EXPECT_LT(worst[0], 0.02);
+  EXPECT_LT(worst[1], 0.04);
 }
 
 TEST(MappingRun, APaceChangesTheTimeOnly) {

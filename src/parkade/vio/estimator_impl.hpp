@@ -91,7 +91,7 @@ class VioEstimator::Impl {
                                                 TimeNs t_ns) const;
   [[nodiscard]] bool readingsAreOfRest(const WindowFrame& frame, const StillnessCheck& check,
                                        bool was_still) const;
-  [[nodiscard]] bool wheelsTurn(const WindowFrame& frame) const;
+  [[nodiscard]] bool wheelsTurn(const WindowFrame& frame, double sigmas) const;
   void rememberRest(const WindowFrame& frame, const StillnessCheck& check, bool seen);
   void rememberTracks(const Observations& observations, TimeNs t_ns);
 

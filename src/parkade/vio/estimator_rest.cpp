@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kLongEnough = 0.7;  // of window_s, between frame sets that images are compared in
 constexpr double kTurningWheels = 2.0;  // sigmas of the wheels' speed
+constexpr double kSurelyTurning = 5.0;  // the same, against pictures that stand still
 
 }  // namespace
 
@@ -36,9 +37,9 @@ std::optional<bool> VioEstimator::Impl::imagesStill(const Observations& observat
   return imagesAtRest(before->observations, observations, options_.standstill);
 }
 
-bool VioEstimator::Impl::wheelsTurn(const WindowFrame& frame) const {
+bool VioEstimator::Impl::wheelsTurn(const WindowFrame& frame, double sigmas) const {
   const double sigma = frame.body_velocity_sigma.x();
-  return sigma > 0.0 && std::abs(frame.body_velocity.x()) > kTurningWheels * sigma;
+  return sigma > 0.0 && std::abs(frame.body_velocity.x()) > sigmas * sigma;
 }
 
 bool VioEstimator::Impl::readingsAreOfRest(const WindowFrame& frame, const StillnessCheck& check,
@@ -80,9 +81,11 @@ void VioEstimator::Impl::detectStandstill(WindowFrame& frame, const Observations
     const double speed = originVelocity(frame, window_.T_imu_vehicle).norm();
     const bool slow = speed < options.max_speed || was_still;
     if (!slow) known_rest_.reset();
-    still_ =
-        check.quiet && covered &&
-        (seen ? *seen : slow && !wheelsTurn(frame) && readingsAreOfRest(frame, check, was_still));
+    // Pictures that a camera gives again and again stand still, too.
+    const bool vouched = seen ? *seen && !wheelsTurn(frame, kSurelyTurning)
+                              : slow && !wheelsTurn(frame, kTurningWheels) &&
+                                    readingsAreOfRest(frame, check, was_still);
+    still_ = check.quiet && covered && vouched;
     rememberRest(frame, check, seen.has_value());
   }
   if (!still_) {
