@@ -30,10 +30,11 @@ Result<std::string> rigFileOf(const std::string& path) {
   if (!std::filesystem::is_directory(path, code)) return path;
   const std::string file = joinPath(path, "rig.yaml");
   if (std::filesystem::is_regular_file(file, code)) return file;
-  return Error{fmt::format(
-      "{}: holds no rig.yaml; a run writes one where it has a pose and refines where its cameras "
-      "sit (more than one camera, vio.calibration.refine_extrinsics)",
-      path)};
+  return Error{
+      fmt::format("{}: holds no rig.yaml; a run writes one where it has a pose and refines its "
+                  "cameras' places or "
+                  "clocks (vio.calibration)",
+                  path)};
 }
 
 Rig learnedRig(const Rig& told, const std::vector<CameraCalibrationEstimate>& learned) {
@@ -44,8 +45,10 @@ Rig learnedRig(const Rig& told, const std::vector<CameraCalibrationEstimate>& le
     RigCamera& camera = rig.cameras[c];
     camera.T_vehicle_cam = learned[c].T_vehicle_cam;
     const auto& sigma = learned[c].sigma;
-    camera.position_sigma = sigma.head<3>().norm() / std::sqrt(3.0);
-    camera.rotation_sigma = sigma.segment<3>(3).norm() / std::sqrt(3.0);
+    if (!sigma.head<6>().isZero()) {  // of one camera alone only the clock is refined
+      camera.position_sigma = sigma.head<3>().norm() / std::sqrt(3.0);
+      camera.rotation_sigma = sigma.segment<3>(3).norm() / std::sqrt(3.0);
+    }
     // To the microsecond: an offset that is not refined is held to a few nanoseconds.
     camera.time_offset_ns += 1000 * std::llround(1e6 * learned[c].time_offset);
     if (camera.mask_path.empty()) continue;

@@ -47,8 +47,9 @@ TextTable summaryTable(const Json& metrics, const Json& timing) {
 TextTable cameraTable(const Json& calibration) {
   constexpr double kDegrees = 180.0 / M_PI;
   TextTable table;
-  table.title = "Where the cameras were found";
-  table.header = {"camera", "moved mm: x", "y", "z", "sigma", "turned deg: x", "y", "z", "sigma"};
+  table.title = "Where the cameras were found, and their clocks";
+  table.header = {"camera", "moved mm: x", "y",     "z",        "sigma", "turned deg: x",
+                  "y",      "z",           "sigma", "clock ms", "sigma"};
   for (const Json& camera : calibration) {
     std::vector<std::string> row = {camera.value("camera", "-")};
     const auto add = [&](const std::string& value, const std::string& sigma, double unit,
@@ -62,12 +63,16 @@ TextTable cameraTable(const Json& calibration) {
     };
     add("/moved_m", "/position_sigma_m", 1e3, 1);
     add("/turned_rad", "/rotation_sigma_rad", kDegrees, 3);
+    row.push_back(figureText(1e3 * reportNumber(camera, "/time_offset_s"), 2));
+    row.push_back(figureText(1e3 * reportNumber(camera, "/time_offset_sigma_s"), 2));
     table.rows.push_back(std::move(row));
   }
   table.note =
-      "Against the rig file, along and about the vehicle's axes; sigma: of one axis. rig.yaml "
-      "holds "
-      "the rig as found, for --rig.";
+      "Against the rig file, along and about the vehicle's axes; sigma: of one axis. clock: added "
+      "to "
+      "the stamps of its pictures it gives the inertial unit's time. rig.yaml holds the rig as "
+      "found, "
+      "for --rig.";
   return table;
 }
 

@@ -4,6 +4,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -91,6 +93,24 @@ std::string troubleText(const HealthLog& health, const std::string& out) {
   if (degraded + lost == 0) return "";
   return fmt::format("{} frame sets degraded, {} lost: why, is in {}\n", degraded, lost,
                      joinPath(out, "health.csv"));
+}
+
+// Where pictures are stamped wrongly; nothing where all are right.
+std::string clockText(const Rig& rig, const std::vector<CameraCalibrationEstimate>& cameras) {
+  constexpr double kNotable = 2e-3;  // s
+  constexpr double kSure = 5.0;      // sigmas
+  std::string text;
+  for (std::size_t c = 0; c < std::min(cameras.size(), rig.cameras.size()); ++c) {
+    const double offset = cameras[c].time_offset;
+    if (std::abs(offset) < std::max(kNotable, kSure * cameras[c].sigma(6))) continue;
+    text += fmt::format("{}{} {:.1f} ms {}", text.empty() ? "" : ", ", rig.cameras[c].name,
+                        1e3 * std::abs(offset), offset < 0.0 ? "late" : "early");
+  }
+  if (text.empty()) return text;
+  return fmt::format(
+      "pictures are stamped {}, by the inertial unit's clock; --rig of the next drive "
+      "tells it from the start\n",
+      text);
 }
 
 Result<OpenedSource> openInput(const RunArguments& arguments, RunMethod method) {
@@ -234,7 +254,8 @@ Status runSequence(RunArguments arguments) {
   fmt::print("{}", timingTable(summary));
   fmt::print("{} frame sets, {} poses, {:.0f} tracks per frame set; wrote {}\n", summary.frame_sets,
              summary.poses, summary.mean_tracks, arguments.out);
-  fmt::print("{}", troubleText(health, arguments.out));
+  fmt::print("{}{}", troubleText(health, arguments.out),
+             clockText(opened->rig, (*run)->calibration()));
   if (!outcome) {
     return Error{fmt::format("{} (the poses up to there are in {})", outcome.error().message,
                              arguments.out)};

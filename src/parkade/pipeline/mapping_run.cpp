@@ -98,6 +98,8 @@ class MappingRun::Impl {
   void estimate(Estimation& work);
   PoseEstimate odometryOf(const Estimation& work);
   void offerPictures(Estimation& work, const PoseEstimate& odometry_pose);
+  [[nodiscard]] std::vector<SE3> camerasSeen(const Estimation& work,
+                                             const PoseEstimate& odometry_pose) const;
   MotionPrior predict(const FramePacket& packet);
   void summarise(Clock::time_point begin);
 
@@ -219,17 +221,29 @@ void MappingRun::Impl::estimate(Estimation& work) {
   work.packet.frames.images.clear();
 }
 
+// Where the cameras were when they took their pictures, in the vehicle's frame at their stamp.
+std::vector<SE3> MappingRun::Impl::camerasSeen(const Estimation& work,
+                                               const PoseEstimate& odometry_pose) const {
+  const SO3& R_vehicle_imu = T_vehicle_imu_.rotation();
+  Vector6d twist = Vector6d::Zero();
+  twist.head<3>() = odometry_pose.T_odom_vehicle.rotation().inverse() * odometry_pose.velocity_odom;
+  if (!work.packet.imu.empty()) {
+    twist.tail<3>() = R_vehicle_imu * (work.packet.imu.back().gyro - odometry_pose.bias_gyro);
+  }
+  std::vector<SE3> cameras;
+  for (const CameraCalibrationEstimate& camera : estimator_.calibration()) {
+    cameras.push_back(SE3::exp(camera.time_offset * twist) * camera.T_vehicle_cam);
+  }
+  return cameras;
+}
+
 void MappingRun::Impl::offerPictures(Estimation& work, const PoseEstimate& odometry_pose) {
   if (!hasPicture(work.packet.frames)) return;
   const std::vector<Landmark> landmarks =
       reckoning != nullptr ? std::vector<Landmark>() : estimator_.landmarks();
   if (!semantics->wants(work.number, odometry_pose, landmarks)) return;
-  std::vector<SE3> cameras;
-  for (const CameraCalibrationEstimate& camera : estimator_.calibration()) {
-    cameras.push_back(camera.T_vehicle_cam);
-  }
   semantics->take(std::move(work.packet.frames), work.number, odometry_pose.T_odom_vehicle,
-                  std::move(cameras));
+                  camerasSeen(work, odometry_pose));
 }
 
 void MappingRun::Impl::finishEstimation() {
@@ -357,8 +371,10 @@ const Trajectory& MappingRun::trajectory() const {
 }
 
 std::vector<CameraCalibrationEstimate> MappingRun::calibration() const {
+  if (impl_->reckoning != nullptr) return {};
   return impl_->estimator().calibration();
 }
+
 const Trajectory& MappingRun::odometry() const {
   return impl_->odometry;
 }

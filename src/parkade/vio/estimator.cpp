@@ -13,12 +13,11 @@
 namespace parkade {
 namespace {
 
-constexpr double kSaneSpeed = 60.0;        // m/s
-constexpr double kSaneBiasGyro = 0.5;      // rad/s
-constexpr double kSaneBiasAccel = 5.0;     // m/s^2
-constexpr int kMinTrackedLandmarks = 10;   // fewer: degraded
-constexpr double kKeepReadings = 2.0;      // s
-constexpr double kHeldCalibration = 1e-6;  // m, rad, s
+constexpr double kSaneSpeed = 60.0;       // m/s
+constexpr double kSaneBiasGyro = 0.5;     // rad/s
+constexpr double kSaneBiasAccel = 5.0;    // m/s^2
+constexpr int kMinTrackedLandmarks = 10;  // fewer: degraded
+constexpr double kKeepReadings = 2.0;     // s
 
 }  // namespace
 

@@ -37,7 +37,8 @@ struct VioStatistics {
 struct CameraCalibrationEstimate {
   SE3 T_vehicle_cam;
   double time_offset = 0.0;  ///< s; added to a stamp gives the time on the IMU's clock
-  /// Standard deviations: position (m, imu axes), rotation (rad, camera axes), time offset (s).
+  /// Standard deviations: position (m, imu axes), rotation (rad, camera axes), time offset (s); 0
+  /// of what is not refined.
   Eigen::Matrix<double, 7, 1> sigma = Eigen::Matrix<double, 7, 1>::Zero();
 };
 

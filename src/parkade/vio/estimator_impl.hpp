@@ -19,6 +19,9 @@
 
 namespace parkade {
 
+/// Sigma of what is not refined of a camera: nothing outweighs it. m, rad, s.
+inline constexpr double kHeldCalibration = 1e-6;
+
 /// Velocity of the vehicle's origin, odom frame, m/s.
 Eigen::Vector3d originVelocity(const WindowFrame& frame, const SE3& T_imu_vehicle);
 

@@ -97,6 +97,7 @@ TEST(VioEstimator, RefinesTheCalibrationWhileDriving) {
   const Rig wrong = disturbed(drive.rig, 3.5e-3, 5e-3, 5);
   VioOptions vio;
   vio.calibration.refine_extrinsics = false;
+  vio.calibration.refine_time_offset = false;
   vio.calibration.rotation_sigma_deg = 0.2;
   VioEstimator believing(wrong, vio);
   const DriveScore off = score(drive, runDrive(drive, believing));

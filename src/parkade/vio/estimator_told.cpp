@@ -87,6 +87,9 @@ std::vector<CameraCalibrationEstimate> VioEstimator::Impl::calibration() const {
       estimate.sigma =
           global_covariance_.diagonal().segment<7>(Window::cameraGlobal(c)).cwiseSqrt();
     }
+    for (Eigen::Index i = 0; i < estimate.sigma.size(); ++i) {
+      if (window_.refinements[c].sigma(i) <= kHeldCalibration) estimate.sigma(i) = 0.0;
+    }
     result.push_back(estimate);
   }
   return result;

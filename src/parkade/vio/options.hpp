@@ -104,10 +104,10 @@ struct VioStartUpOptions {
 struct VioCalibrationOptions {
   bool refine_extrinsics = true;
   bool learn_sigmas = true;
-  bool refine_time_offset = false;
+  bool refine_time_offset = true;
   double position_sigma = 0.005;
   double rotation_sigma_deg = 0.1;
-  double time_sigma = 0.005;
+  double time_sigma = 0.01;
 
   void visit(OptionVisitor& v) {
     v.field("refine_extrinsics", refine_extrinsics,
