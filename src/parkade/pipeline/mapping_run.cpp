@@ -12,10 +12,12 @@
 
 #include "parkade/core/check.hpp"
 #include "parkade/pipeline/frame_packets.hpp"
+#include "parkade/pipeline/late_cameras.hpp"
 #include "parkade/pipeline/pace.hpp"
 #include "parkade/pipeline/repeated_pictures.hpp"
 #include "parkade/pipeline/semantic_parts.hpp"
 #include "parkade/pipeline/semantic_queue.hpp"
+#include "parkade/pipeline/settling.hpp"
 #include "parkade/pipeline/thread_pool.hpp"
 #include "parkade/tracking/overlap.hpp"
 #include "parkade/vio/rig_error.hpp"
@@ -24,23 +26,6 @@ namespace parkade {
 namespace {
 
 using Clock = BusyTime::Clock;
-
-// Between two frame sets, by the odometry's state and the inertial unit; far above what both say of
-// a car that stands.
-bool saysMotion(const MotionPrior& prior) {
-  constexpr double kMoved = 0.02;   // m
-  constexpr double kTurned = 5e-3;  // rad
-  if (!prior.valid) return false;
-  const SE3& T = prior.T_previous_current;
-  return (prior.translation_valid && T.translation().norm() > kMoved) ||
-         T.rotation().log().norm() > kTurned;
-}
-
-std::vector<std::string> namesOf(const Rig& rig) {
-  std::vector<std::string> names;
-  for (const RigCamera& camera : rig.cameras) names.push_back(camera.name);
-  return names;
-}
 
 bool hasPicture(const FrameSet& frames) {
   return std::any_of(frames.images.begin(), frames.images.end(),
@@ -55,7 +40,7 @@ class MappingRun::Impl {
       : tracker(rig, options.tracking),
         estimator_(rig, options.vio),
         T_vehicle_imu_(rig.imu.T_vehicle_imu),
-        repeated_(namesOf(rig)),
+        repeated_(rig),
         semantics_delay_(options.semantics_delay),
         pace_(options.pace),
         live_(options.live),
@@ -98,8 +83,6 @@ class MappingRun::Impl {
   void estimate(Estimation& work);
   PoseEstimate odometryOf(const Estimation& work);
   void offerPictures(Estimation& work, const PoseEstimate& odometry_pose);
-  [[nodiscard]] std::vector<SE3> camerasSeen(const Estimation& work,
-                                             const PoseEstimate& odometry_pose) const;
   MotionPrior predict(const FramePacket& packet);
   void summarise(Clock::time_point begin);
 
@@ -112,6 +95,7 @@ class MappingRun::Impl {
   TimeNs first_t_ns_ = 0;
   std::int64_t observations_ = 0;
   RepeatedPictures repeated_;
+  Settling settling_;
   std::unique_ptr<Estimation> running_;
   StageClock read_clock_{"read"};
   StageClock track_clock_{"track"};
@@ -140,7 +124,7 @@ MotionPrior MappingRun::Impl::predict(const FramePacket& packet) {
 TrackSet MappingRun::Impl::track(FramePacket& packet) {
   TrackSet tracks;
   const MotionPrior prior = reckoning == nullptr ? predict(packet) : MotionPrior{};
-  const bool moves = wheelsTurn(packet.wheel) || saysMotion(prior);
+  const bool moves = saysMotion(packet.wheel) || saysMotion(prior);
   summary.pictures_repeated += repeated_.drop(packet.frames, moves);
   if (reckoning != nullptr) {
     tracks.t_ns = packet.frames.t_ns;
@@ -221,29 +205,18 @@ void MappingRun::Impl::estimate(Estimation& work) {
   work.packet.frames.images.clear();
 }
 
-// Where the cameras were when they took their pictures, in the vehicle's frame at their stamp.
-std::vector<SE3> MappingRun::Impl::camerasSeen(const Estimation& work,
-                                               const PoseEstimate& odometry_pose) const {
-  const SO3& R_vehicle_imu = T_vehicle_imu_.rotation();
-  Vector6d twist = Vector6d::Zero();
-  twist.head<3>() = odometry_pose.T_odom_vehicle.rotation().inverse() * odometry_pose.velocity_odom;
-  if (!work.packet.imu.empty()) {
-    twist.tail<3>() = R_vehicle_imu * (work.packet.imu.back().gyro - odometry_pose.bias_gyro);
-  }
-  std::vector<SE3> cameras;
-  for (const CameraCalibrationEstimate& camera : estimator_.calibration()) {
-    cameras.push_back(SE3::exp(camera.time_offset * twist) * camera.T_vehicle_cam);
-  }
-  return cameras;
-}
-
 void MappingRun::Impl::offerPictures(Estimation& work, const PoseEstimate& odometry_pose) {
-  if (!hasPicture(work.packet.frames)) return;
+  const bool tracked = reckoning != nullptr || !work.tracks.observations.empty();
+  const bool settled = settling_.settled(work.packet.frames.t_ns, tracked);
+  if (!settled || !hasPicture(work.packet.frames)) return;
   const std::vector<Landmark> landmarks =
       reckoning != nullptr ? std::vector<Landmark>() : estimator_.landmarks();
   if (!semantics->wants(work.number, odometry_pose, landmarks)) return;
-  semantics->take(std::move(work.packet.frames), work.number, odometry_pose.T_odom_vehicle,
-                  camerasSeen(work, odometry_pose));
+  const Eigen::Vector3d gyro =
+      work.packet.imu.empty() ? odometry_pose.bias_gyro : work.packet.imu.back().gyro;
+  semantics->take(
+      std::move(work.packet.frames), work.number, odometry_pose.T_odom_vehicle,
+      camerasAtStamp(estimator_.calibration(), odometry_pose, gyro, T_vehicle_imu_.rotation()));
 }
 
 void MappingRun::Impl::finishEstimation() {
@@ -265,11 +238,11 @@ void MappingRun::Impl::settle() {
 }
 
 Status MappingRun::Impl::run(SensorSource& source, const ProgressCallback& progress) {
-  struct Settling {
+  struct AtTheEnd {
     Impl& run;
-    ~Settling() { run.settle(); }
+    ~AtTheEnd() { run.settle(); }
   };
-  const Settling at_the_end{*this};
+  const AtTheEnd at_the_end{*this};
   const Clock::time_point begin = Clock::now();
   const SensorSourceInfo& info = source.info();
   FramePackets packets(

@@ -7,7 +7,6 @@
 #include <functional>
 #include <opencv2/core/mat.hpp>
 #include <string_view>
-#include <utility>
 
 #include "parkade/core/log.hpp"
 
@@ -27,8 +26,8 @@ std::size_t hashOfRows(const cv::Mat& image) {
 
 }  // namespace
 
-RepeatedPictures::RepeatedPictures(std::vector<std::string> cameras) {
-  for (std::string& camera : cameras) last_.push_back({std::move(camera)});
+RepeatedPictures::RepeatedPictures(const Rig& rig) {
+  for (const RigCamera& camera : rig.cameras) last_.push_back({camera.name});
 }
 
 int RepeatedPictures::drop(FrameSet& frames, bool moves) {
@@ -56,11 +55,20 @@ int RepeatedPictures::drop(FrameSet& frames, bool moves) {
   return dropped;
 }
 
-bool wheelsTurn(const std::vector<WheelSample>& wheels) {
+bool saysMotion(const std::vector<WheelSample>& wheels) {
   constexpr double kTurning = 0.15;  // m/s
   return std::any_of(wheels.begin(), wheels.end(), [](const WheelSample& sample) {
     return std::abs(sample.rear_left_mps) > kTurning || std::abs(sample.rear_right_mps) > kTurning;
   });
+}
+
+bool saysMotion(const MotionPrior& prior) {
+  constexpr double kMoved = 0.02;   // m
+  constexpr double kTurned = 5e-3;  // rad
+  if (!prior.valid) return false;
+  const SE3& T = prior.T_previous_current;
+  return (prior.translation_valid && T.translation().norm() > kMoved) ||
+         T.rotation().log().norm() > kTurned;
 }
 
 }  // namespace parkade

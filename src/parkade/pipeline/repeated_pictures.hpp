@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "parkade/camera/rig.hpp"
+#include "parkade/types/motion_prior.hpp"
 #include "parkade/types/samples.hpp"
 
 namespace parkade {
@@ -16,8 +18,7 @@ namespace parkade {
 /// picture is therefore left where the car may stand.
 class RepeatedPictures {
  public:
-  /// cameras: their names, for the log.
-  explicit RepeatedPictures(std::vector<std::string> cameras);
+  explicit RepeatedPictures(const Rig& rig);
 
   /// Compares with each camera's last picture, every 16th row of it. moves: other sensors say that
   /// the car does. Empties what repeats then; returns how many these are.
@@ -33,6 +34,10 @@ class RepeatedPictures {
 };
 
 /// Whether wheels turn faster than they seem to at rest.
-bool wheelsTurn(const std::vector<WheelSample>& wheels);
+bool saysMotion(const std::vector<WheelSample>& wheels);
+
+/// Whether the car moves between two frame sets, by the odometry's state and the inertial unit; far
+/// above what both say of one that stands.
+bool saysMotion(const MotionPrior& prior);
 
 }  // namespace parkade

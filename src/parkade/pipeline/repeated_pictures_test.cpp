@@ -22,8 +22,14 @@ FrameSet frameSet(int first, int second) {
   return frames;
 }
 
+Rig twoCameras() {
+  Rig rig;
+  rig.cameras.resize(2);
+  return rig;
+}
+
 TEST(RepeatedPictures, AreTakenOutWhereTheCarMoves) {
-  RepeatedPictures pictures({"cam0", "cam1"});
+  RepeatedPictures pictures(twoCameras());
   FrameSet frames = frameSet(1, 2);
   EXPECT_EQ(pictures.drop(frames, true), 0);
   frames = frameSet(1, 3);
@@ -40,7 +46,7 @@ TEST(RepeatedPictures, AreTakenOutWhereTheCarMoves) {
 }
 
 TEST(RepeatedPictures, StayWhereTheCarMayStand) {
-  RepeatedPictures pictures({"cam0", "cam1"});
+  RepeatedPictures pictures(twoCameras());
   FrameSet frames = frameSet(1, 2);
   pictures.drop(frames, true);
   frames = frameSet(1, 2);
@@ -50,7 +56,7 @@ TEST(RepeatedPictures, StayWhereTheCarMayStand) {
 }
 
 TEST(RepeatedPictures, ACameraThatGivesNothingInBetweenIsRemembered) {
-  RepeatedPictures pictures({"cam0", "cam1"});
+  RepeatedPictures pictures(twoCameras());
   FrameSet frames = frameSet(1, 2);
   pictures.drop(frames, true);
   frames = frameSet(1, 3);
@@ -60,10 +66,19 @@ TEST(RepeatedPictures, ACameraThatGivesNothingInBetweenIsRemembered) {
   EXPECT_EQ(pictures.drop(frames, true), 1);
 }
 
-TEST(RepeatedPictures, WheelsTellWhetherTheyTurn) {
-  EXPECT_FALSE(wheelsTurn({}));
-  EXPECT_FALSE(wheelsTurn({{0, 0.1, NAN, NAN}, {1, NAN, NAN, NAN}}));
-  EXPECT_TRUE(wheelsTurn({{0, 0.0, 0.0, NAN}, {1, NAN, -0.2, NAN}}));
+TEST(RepeatedPictures, WheelsAndTheOdometryTellWhetherTheCarMoves) {
+  EXPECT_FALSE(saysMotion(std::vector<WheelSample>{}));
+  EXPECT_FALSE(saysMotion({{0, 0.1, NAN, NAN}, {1, NAN, NAN, NAN}}));
+  EXPECT_TRUE(saysMotion({{0, 0.0, 0.0, NAN}, {1, NAN, -0.2, NAN}}));
+  MotionPrior prior;
+  prior.T_previous_current = SE3(SO3(), {0.1, 0.0, 0.0});
+  EXPECT_FALSE(saysMotion(prior));
+  prior.valid = true;
+  EXPECT_FALSE(saysMotion(prior));
+  prior.translation_valid = true;
+  EXPECT_TRUE(saysMotion(prior));
+  prior.T_previous_current = SE3(SO3::exp({0.0, 0.0, 0.01}), Eigen::Vector3d::Zero());
+  EXPECT_TRUE(saysMotion(prior));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "parkade/pipeline/pace.hpp"
+#include "parkade/pipeline/settling.hpp"
 #include "parkade/pipeline/stage_clock.hpp"
 #include "parkade/pipeline/thread_pool.hpp"
 
@@ -93,6 +94,19 @@ TEST(Pace, WithoutAPaceAllIsDueNow) {
   EXPECT_GE(pace.awaitDue(0), before);
   const Pace::Clock::time_point due = pace.awaitDue(fromSeconds(3600.0));
   EXPECT_LE(due, Pace::Clock::now());
+}
+
+TEST(Settling, TakesTimeAfterLongDarknessAlone) {
+  Settling settling;
+  const auto at = [&](double t, bool tracked) { return settling.settled(fromSeconds(t), tracked); };
+  EXPECT_TRUE(at(0.0, true));
+  EXPECT_TRUE(at(1.0, false));
+  EXPECT_TRUE(at(1.9, true));   // a short one
+  EXPECT_TRUE(at(3.0, false));  // dark: nothing is seen that could stand apart
+  EXPECT_FALSE(at(4.0, true));
+  EXPECT_FALSE(at(5.4, true));
+  EXPECT_TRUE(at(5.5, true));
+  EXPECT_FALSE(at(9.0, true));  // no frame set in between
 }
 
 }  // namespace

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The Parkade authors
+// SPDX-License-Identifier: Apache-2.0
+#include "parkade/pipeline/late_cameras.hpp"
+
+#include <gtest/gtest.h>
+
+namespace parkade {
+namespace {
+
+TEST(LateCameras, StandWhereTheCarWasWhenTheyTookTheirPictures) {
+  const SO3 R_vehicle_imu = SO3::exp({0.0, 0.0, 0.5});
+  PoseEstimate pose;
+  pose.T_odom_vehicle = SE3(SO3::exp({0.0, 0.0, 1.0}), {3.0, 4.0, 0.0});
+  pose.velocity_odom = pose.T_odom_vehicle.rotation() * Eigen::Vector3d(4.0, 0.0, 0.0);
+  pose.bias_gyro = {0.01, 0.0, 0.02};
+  const Eigen::Vector3d gyro = R_vehicle_imu.inverse() * Eigen::Vector3d(0.0, 0.0, 0.3);
+  CameraCalibrationEstimate camera;
+  camera.T_vehicle_cam = SE3(SO3::exp({0.1, 0.2, 0.3}), {1.0, 0.5, 0.8});
+  CameraCalibrationEstimate late = camera;
+  late.time_offset = -0.02;  // what is stamped now was taken 20 ms ago
+  const std::vector<SE3> places =
+      camerasAtStamp({camera, late}, pose, gyro + pose.bias_gyro, R_vehicle_imu);
+  ASSERT_EQ(places.size(), 2u);
+  EXPECT_TRUE(places[0].matrix().isApprox(camera.T_vehicle_cam.matrix(), 1e-12));
+  const SE3 T_now_then(SO3::exp({0.0, 0.0, -0.006}), {-0.08, 0.0, 0.0});
+  EXPECT_TRUE(places[1].matrix().isApprox((T_now_then * camera.T_vehicle_cam).matrix(), 1e-3));
+  EXPECT_NEAR(places[1].translation().x(), 1.0 - 0.08 + 0.006 * 0.5, 1e-3);
+}
+
+}  // namespace
+}  // namespace parkade
