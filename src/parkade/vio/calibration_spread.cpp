@@ -13,19 +13,21 @@ namespace {
 
 constexpr double kLeastPosition = 2e-4;  // m; no calibration is better
 constexpr double kLeastRotation = 1e-4;  // rad
+constexpr double kLeastTime = 2e-5;      // s; of cameras that one clock triggers
 
-// Of three neighbouring degrees of freedom of all cameras, from the mean square of each.
-void learn(Window& window, const Vector7d& mean_square, Eigen::Index first, double least) {
+// Of neighbouring degrees of freedom of all cameras, from the mean square of each.
+void learn(Window& window, const Vector7d& mean_square, Eigen::Index first, Eigen::Index count,
+           double least) {
   if (window.refinements.front().sigma(first) < least) return;
-  const double sigma = std::max(least, std::sqrt(mean_square.segment<3>(first).mean()));
+  const double sigma = std::max(least, std::sqrt(mean_square.segment(first, count).mean()));
   for (CameraRefinement& refinement : window.refinements) {
-    refinement.sigma.segment<3>(first).setConstant(sigma);
+    refinement.sigma.segment(first, count).setConstant(sigma);
   }
 }
 
 }  // namespace
 
-void learnCalibrationSpread(Window& window, const Eigen::MatrixXd& global_covariance) {
+void learnCalibrationSpread(Window& window, const Eigen::MatrixXd& global_covariance, bool places) {
   if (window.refinements.empty()) return;
   PARKADE_CHECK(global_covariance.rows() == window.globalSize(), "covariance of {} of {} globals",
                 global_covariance.rows(), window.globalSize());
@@ -37,8 +39,10 @@ void learnCalibrationSpread(Window& window, const Eigen::MatrixXd& global_covari
            global_covariance.diagonal().segment<7>(Window::cameraGlobal(c));
   }
   const Vector7d mean_square = sum / static_cast<double>(window.refinements.size());
-  learn(window, mean_square, 0, kLeastPosition);
-  learn(window, mean_square, 3, kLeastRotation);
+  learn(window, mean_square, 6, 1, kLeastTime);
+  if (!places) return;
+  learn(window, mean_square, 0, 3, kLeastPosition);
+  learn(window, mean_square, 3, 3, kLeastRotation);
 }
 
 }  // namespace parkade

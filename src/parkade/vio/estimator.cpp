@@ -139,8 +139,8 @@ void VioEstimator::Impl::optimise(const SolveOptions& options) {
     newest_covariance_ = summary.newest_covariance;
     global_covariance_ = summary.global_covariance;
     // The trials of a start would learn from each other.
-    if (learns_sigmas_ && initialised_ && !held) {
-      learnCalibrationSpread(window_, global_covariance_);
+    if (options_.calibration.learn_sigmas && initialised_ && !held) {
+      learnCalibrationSpread(window_, global_covariance_, learns_sigmas_);
     }
   }
   int keyframes = 0;

@@ -5,6 +5,8 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "parkade/core/random.hpp"
 #include "parkade/vio/track_simulator.hpp"
 
@@ -140,6 +142,13 @@ TEST(VioEstimator, SigmasThatTheRigTellsAreNotLearned) {
   EXPECT_DOUBLE_EQ(holding.calibration()[0].sigma(5), 3e-4);
   runDrive(drive, learning);
   runDrive(drive, holding);
+  // Clocks are learned all the same: these are exact, and known to be.
+  for (const VioEstimator* estimator : {&learning, &holding}) {
+    for (const CameraCalibrationEstimate& camera : estimator->calibration()) {
+      EXPECT_LT(std::abs(camera.time_offset), 2e-4);
+      EXPECT_LT(camera.sigma(6), 2e-4);
+    }
+  }
   EXPECT_GT(holding.rigSigma().length, 2.0 * learning.rigSigma().length);
   EXPECT_GT(holding.rigSigma().turn.minCoeff(), 1.3 * learning.rigSigma().turn.minCoeff());
   fmt::print("lengths {:.5f}, {:.5f}; turns {:.6f}, {:.6f} rad\n", holding.rigSigma().length,

@@ -107,7 +107,7 @@ struct VioCalibrationOptions {
   bool refine_time_offset = true;
   double position_sigma = 0.005;
   double rotation_sigma_deg = 0.1;
-  double time_sigma = 0.01;
+  double time_sigma = 0.005;
 
   void visit(OptionVisitor& v) {
     v.field("refine_extrinsics", refine_extrinsics,
