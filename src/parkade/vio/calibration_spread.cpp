@@ -25,6 +25,19 @@ void learn(Window& window, const Vector7d& mean_square, Eigen::Index first, Eige
   }
 }
 
+// Whether pictures tell the clocks far better than the calibration does. One clock often triggers
+// all cameras: while next to nothing is known of it, steps of (10) would make it exact.
+bool clocksAreSeen(const Window& window, const Eigen::MatrixXd& global_covariance) {
+  constexpr double kShare = 0.1;  // of the variance
+  double sum = 0.0;
+  for (std::size_t c = 0; c < window.refinements.size(); ++c) {
+    const Eigen::Index time = Window::cameraGlobal(c) + 6;
+    sum += global_covariance(time, time);
+  }
+  const double sigma = window.refinements.front().sigma(6);
+  return sum < kShare * sigma * sigma * static_cast<double>(window.refinements.size());
+}
+
 }  // namespace
 
 void learnCalibrationSpread(Window& window, const Eigen::MatrixXd& global_covariance, bool places) {
@@ -39,7 +52,7 @@ void learnCalibrationSpread(Window& window, const Eigen::MatrixXd& global_covari
            global_covariance.diagonal().segment<7>(Window::cameraGlobal(c));
   }
   const Vector7d mean_square = sum / static_cast<double>(window.refinements.size());
-  learn(window, mean_square, 6, 1, kLeastTime);
+  if (clocksAreSeen(window, global_covariance)) learn(window, mean_square, 6, 1, kLeastTime);
   if (!places) return;
   learn(window, mean_square, 0, 3, kLeastPosition);
   learn(window, mean_square, 3, 3, kLeastRotation);
