@@ -32,8 +32,7 @@ Result<std::string> rigFileOf(const std::string& path) {
   if (std::filesystem::is_regular_file(file, code)) return file;
   return Error{
       fmt::format("{}: holds no rig.yaml; a run writes one where it has a pose and refines its "
-                  "cameras' places or "
-                  "clocks (vio.calibration)",
+                  "cameras' places or clocks (vio.calibration)",
                   path)};
 }
 

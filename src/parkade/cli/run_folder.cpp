@@ -181,8 +181,8 @@ Status RunFolder::keep() {
   if (path_ == folder_) return {};
   if (Status removed = removeResults(folder_); !removed) return removed;
   if (Status moved = moveResults(path_, folder_); !moved) return moved;
+  if (Status removed = removeResults(path_); !removed) return removed;  // its empty subfolders
   std::error_code code;  // something of the user's may be in it
-  for (const char* name : kSubfolders) fs::remove(fs::path(path_) / name, code);
   fs::remove(path_, code);
   path_ = folder_;
   return {};
