@@ -19,6 +19,22 @@ constexpr TimeNs kSpikeSurroundings = 100 * kNsPerMs;  // on either side
 constexpr TimeNs kLongestSpike = 50 * kNsPerMs;
 constexpr std::size_t kMinSurroundings = 5;
 
+constexpr double kIsolatedForce = 20.0;        // m/s^2, off both neighbours
+constexpr double kIsolatedRate = 0.5;          // rad/s
+constexpr double kUnusual = 10.0;              // times what is usual
+constexpr double kMostApart = 0.5;             // of the neighbours, of what stands apart
+constexpr double kLearningShare = 0.01;        // of each reading
+constexpr TimeNs kNeighbours = 50 * kNsPerMs;  // from one to the other
+
+// Whether a value stands apart from those before and after it. Learns what is usual.
+bool standsApart(const Eigen::Vector3d& before, const Eigen::Vector3d& value,
+                 const Eigen::Vector3d& after, double least, double& usual) {
+  const double off = (value - 0.5 * (before + after)).norm();
+  const double limit = std::max(least, kUnusual * usual);
+  usual += kLearningShare * (std::min(off, limit) - usual);
+  return off > limit && (after - before).norm() < kMostApart * off;
+}
+
 }  // namespace
 
 bool ReadingBuffer::add(const ImuReading& reading) {
@@ -88,6 +104,22 @@ Preintegration ReadingBuffer::sumBetween(TimeNs begin_ns, TimeNs end_ns, const I
     sum.integrate(readings[i], readings[i + 1], spacingAt(judged) > gap_ns ? 0 : gap_ns);
   }
   return sum;
+}
+
+std::optional<TimeNs> ReadingBuffer::dropIsolated() {
+  const std::size_t count = readings_.size();
+  if (count < 3) return std::nullopt;
+  const ImuReading& before = readings_[count - 3];
+  const ImuReading& reading = readings_[count - 2];
+  const ImuReading& after = readings_[count - 1];
+  if (after.t_ns - before.t_ns > kNeighbours) return std::nullopt;
+  const bool rate = standsApart(before.gyro, reading.gyro, after.gyro, kIsolatedRate, usual_rate_);
+  const bool force =
+      standsApart(before.accel, reading.accel, after.accel, kIsolatedForce, usual_force_);
+  if (!rate && !force) return std::nullopt;
+  const TimeNs t_ns = reading.t_ns;
+  readings_.erase(readings_.end() - 2);
+  return t_ns;
 }
 
 std::vector<char> ReadingBuffer::unusual(std::size_t from, std::size_t to) const {

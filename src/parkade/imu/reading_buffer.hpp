@@ -3,6 +3,7 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "parkade/imu/imu_types.hpp"
@@ -30,6 +31,12 @@ class ReadingBuffer {
   /// The reading at an instant, interpolated or held.
   [[nodiscard]] ImuReading at(TimeNs t_ns) const;
 
+  /// Forgets the reading before the newest one where it stands apart from both its neighbours and
+  /// these agree: a broken transfer, for no vehicle moves so within one reading. What is usual
+  /// between neighbours, engine and road included, is learned. Call it after each add(); returns
+  /// the time of what was forgotten.
+  std::optional<TimeNs> dropIsolated();
+
   /// Forgets broken readings, single or a few, among those that cover two instants: they lie far
   /// from the median of those around, and the readings before and after them do not. Returns how
   /// many.
@@ -49,6 +56,8 @@ class ReadingBuffer {
   /// Whether each of some readings lies far from their median.
   [[nodiscard]] std::vector<char> unusual(std::size_t from, std::size_t to) const;
   std::deque<ImuReading> readings_;
+  double usual_rate_ = 0.0;   ///< rad/s, by which readings miss the mean of their neighbours
+  double usual_force_ = 0.0;  ///< m/s^2
 };
 
 }  // namespace parkade

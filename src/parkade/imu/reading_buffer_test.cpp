@@ -119,5 +119,43 @@ TEST(ReadingBuffer, KeepsWhatInterpolationStillNeeds) {
   EXPECT_EQ(buffer.size(), 1U);
 }
 
+// Readings at 200 Hz of a car that shakes a little, with some of them changed.
+int isolatedAmong(const std::function<void(int, ImuReading&)>& change, TimeNs step_ms = 5) {
+  ReadingBuffer buffer;
+  int dropped = 0;
+  for (int i = 0; i < 400; ++i) {
+    ImuReading reading;
+    reading.t_ns = i * step_ms * kNsPerMs;
+    reading.gyro = Eigen::Vector3d(0.0, 0.02 * (i % 3), 0.3);
+    reading.accel = Eigen::Vector3d(0.5 * (i % 2), 0.0, 9.81);
+    change(i, reading);
+    EXPECT_TRUE(buffer.add(reading));
+    if (buffer.dropIsolated()) ++dropped;
+  }
+  EXPECT_EQ(buffer.size(), 400U - static_cast<std::size_t>(dropped));
+  return dropped;
+}
+
+TEST(ReadingBuffer, ReadingsThatStandApartAreForgotten) {
+  EXPECT_EQ(isolatedAmong([](int, ImuReading&) {}), 0);
+  const auto broken = [](int i, ImuReading& reading) {
+    if (i == 100) reading.gyro.x() = -3.0;
+    if (i == 200) reading.accel = Eigen::Vector3d(-60.0, 0.0, 0.0);
+    if (i == 300) reading.gyro.setZero(), reading.accel.setZero();  // 9.81 m/s^2: a hard bump may
+  };
+  EXPECT_EQ(isolatedAmong(broken), 2);
+  EXPECT_EQ(isolatedAmong(broken, 40), 0);  // too slow to tell
+}
+
+TEST(ReadingBuffer, StepsBumpsAndShakingStay) {
+  EXPECT_EQ(isolatedAmong([](int i, ImuReading& r) { r.gyro.z() += i >= 200 ? 2.0 : 0.0; }), 0);
+  const auto bump = [](int i, ImuReading& r) {
+    if (i >= 200 && i < 204) r.accel.z() += i % 2 == 0 ? 40.0 : 30.0;
+  };
+  EXPECT_EQ(isolatedAmong(bump), 0);
+  const auto drone = [](int i, ImuReading& r) { r.accel.z() += i % 4 == 0 ? 25.0 : 0.0; };
+  EXPECT_LT(isolatedAmong(drone), 20);  // until it is known to be usual
+}
+
 }  // namespace
 }  // namespace parkade
