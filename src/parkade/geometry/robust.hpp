@@ -30,6 +30,13 @@ inline RobustValue cauchy(double s, double scale) {
   return {limit * std::log(ratio), 1.0 / ratio};
 }
 
+/// Quadratic inside the scale, like a logarithm outside.
+inline RobustValue logarithmic(double s, double scale) {
+  const double limit = scale * scale;
+  if (s <= limit) return {s, 1.0};
+  return {limit * (1.0 + std::log(s / limit)), limit / s};
+}
+
 /// Constant outside the scale: such residuals have no weight at all.
 inline RobustValue tukey(double s, double scale) {
   const double limit = scale * scale;

@@ -97,7 +97,7 @@ TEST(SplineSE3, RefusesTimesOutside) {
 }
 
 TEST(RobustKernels, AreQuadraticNearZeroAndWeightsAreDerivatives) {
-  for (const auto& kernel : {huber, cauchy, tukey}) {
+  for (const auto& kernel : {huber, cauchy, logarithmic, tukey}) {
     EXPECT_NEAR(kernel(1e-8, 2.0).rho, 1e-8, 1e-15);
     EXPECT_NEAR(kernel(1e-8, 2.0).weight, 1.0, 1e-8);
     for (const double s : {0.5, 3.9, 4.1, 30.0}) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "parkade/core/log.hpp"
 #include "parkade/vio/calibration_spread.hpp"
@@ -18,6 +19,17 @@ constexpr double kSaneBiasGyro = 0.5;     // rad/s
 constexpr double kSaneBiasAccel = 5.0;    // m/s^2
 constexpr int kMinTrackedLandmarks = 10;  // fewer: degraded
 constexpr double kKeepReadings = 2.0;     // s
+// Of a reading: sums that begin or end so near to it may have been interpolated from it.
+constexpr TimeNs kReach = 50 * kNsPerMs;
+
+ImuNoise toldNoise(const ImuCalibration& imu) {
+  ImuNoise noise;
+  noise.gyroscope_noise_density = imu.gyroscope_noise_density;
+  noise.gyroscope_random_walk = imu.gyroscope_random_walk;
+  noise.accelerometer_noise_density = imu.accelerometer_noise_density;
+  noise.accelerometer_random_walk = imu.accelerometer_random_walk;
+  return noise;
+}
 
 }  // namespace
 
@@ -27,12 +39,10 @@ Eigen::Vector3d originVelocity(const WindowFrame& frame, const SE3& T_imu_vehicl
 }
 
 VioEstimator::Impl::Impl(const Rig& rig, const VioOptions& options)
-    : options_(options), features_(options) {
-  noise_.gyroscope_noise_density = options.imu_noise_factor * rig.imu.gyroscope_noise_density;
-  noise_.gyroscope_random_walk = rig.imu.gyroscope_random_walk;
-  noise_.accelerometer_noise_density =
-      options.imu_noise_factor * rig.imu.accelerometer_noise_density;
-  noise_.accelerometer_random_walk = rig.imu.accelerometer_random_walk;
+    : options_(options),
+      inertial_noise_(toldNoise(rig.imu), options.imu_noise_factor),
+      features_(options) {
+  noise_ = inertial_noise_.noise();
   gap_ns_ = fromSeconds(options.max_imu_gap_s);
   T_vehicle_imu_ = rig.imu.T_vehicle_imu;
   const SE3 T_imu_vehicle = T_vehicle_imu_.inverse();
@@ -75,6 +85,20 @@ void VioEstimator::Impl::addImu(const ImuSample& sample) {
         "IMU reading at {} ns dropped: not newer than the last one, not finite, or beyond what a "
         "vehicle does",
         sample.t_ns);
+    return;
+  }
+  const std::optional<TimeNs> isolated = readings_.dropIsolated();
+  if (!isolated) return;
+  if (isolated_readings_++ == 0) {
+    logWarning(
+        "IMU reading at {} ns left out: it stands apart from those before and after it, as a "
+        "broken transfer does; others like it are left out silently",
+        *isolated);
+  }
+  for (std::size_t i = 1; i < window_.frames.size(); ++i) {
+    const bool affected =
+        *isolated<window_.frames[i].t_ns + kReach&& * isolated> window_.frames[i - 1].t_ns - kReach;
+    if (affected) window_.frames[i].imu_outdated = true;
   }
 }
 
@@ -123,7 +147,7 @@ void VioEstimator::Impl::dropOldReadings(TimeNs now_ns) {
 SolveOptions VioEstimator::Impl::solveOptions(int max_iterations) const {
   SolveOptions solve;
   solve.max_iterations = max_iterations;
-  solve.loss = {RobustLoss::Kernel::kCauchy, options_.window.cauchy};
+  solve.loss.views = {RobustLoss::Kernel::kCauchy, options_.window.cauchy};
   return solve;
 }
 

@@ -1,32 +1,53 @@
 // SPDX-FileCopyrightText: 2026 The Parkade authors
 // SPDX-License-Identifier: Apache-2.0
 // How a frame set enters the window.
+#include <cmath>
+
 #include "parkade/core/log.hpp"
 #include "parkade/vio/estimator_impl.hpp"
+#include "parkade/vio/factors.hpp"
 
 namespace parkade {
 namespace {
 
+constexpr int kMinTellers = 50;            // landmarks in view, to learn from readings
 constexpr double kSettledPosition = 0.01;  // m, a step that needs no second one
 constexpr double kSettledRotation = 1e-3;  // rad
+constexpr double kSameNoise = 0.15;        // sums are not renewed for less
 
 }  // namespace
 
 void VioEstimator::Impl::setImu(WindowFrame& frame, TimeNs begin_ns, const ImuBias& bias) const {
   if (readings_.empty()) return;
-  const Preintegration sum = readings_.sumBetween(begin_ns, frame.t_ns, noise_, bias, gap_ns_);
-  frame.imu_tail_held = readings_.lastTime() < frame.t_ns;
+  const Preintegration sum =
+      readings_.sumBetween(begin_ns, frame.t_ns, inertial_noise_.noise(), bias, gap_ns_);
+  frame.imu_noise_factor = inertial_noise_.factor();
+  frame.imu_outdated = readings_.lastTime() < frame.t_ns;
   frame.imu = sum;
   frame.imu_sqrt_information = sqrtInformation(sum);
 }
 
-// Readings that were missing at a frame may have come since.
-void VioEstimator::Impl::sumHeldAgain() {
+// Readings that were missing at a frame may have come since, or turned out to be broken.
+void VioEstimator::Impl::sumOutdatedAgain() {
+  const double factor = inertial_noise_.factor();
   for (std::size_t i = 1; i < window_.frames.size(); ++i) {
     WindowFrame& frame = window_.frames[i];
-    if (!frame.imu || !frame.imu_tail_held) continue;
+    if (!frame.imu) continue;
+    const bool renew = std::abs(factor / frame.imu_noise_factor - 1.0) > kSameNoise;
+    if (!frame.imu_outdated && !renew) continue;
     setImu(frame, window_.frames[i - 1].t_ns, frame.imu->bias());
   }
+}
+
+void VioEstimator::Impl::learnInertialNoise() {
+  const std::size_t count = window_.frames.size();
+  if (count < 3) return;
+  const WindowFrame& begin = window_.frames[count - 3];
+  const WindowFrame& frame = window_.frames[count - 2];
+  if (!frame.imu || frame.imu->gapDuration() > 0.0 || frame.still_since >= 0) return;
+  if (begin.cameras == 0 || frame.cameras == 0 || solved_landmarks_ < kMinTellers) return;
+  const Vector15d residual = imuResidual(begin, frame, window_.gravity, nullptr, nullptr, nullptr);
+  inertial_noise_.learn(residual, frame.imu_noise_factor);
 }
 
 Eigen::Matrix<double, 6, 6> VioEstimator::Impl::predictFrame(WindowFrame& frame,
@@ -77,7 +98,7 @@ GateResult VioEstimator::Impl::gateNewest(const Eigen::Matrix<double, 6, 6>& spr
 }
 
 void VioEstimator::Impl::addFrame(const TrackSet& tracks) {
-  sumHeldAgain();
+  sumOutdatedAgain();
   WindowFrame frame;
   frame.id = next_id_++;
   frame.t_ns = tracks.t_ns;
@@ -97,6 +118,7 @@ void VioEstimator::Impl::addFrame(const TrackSet& tracks) {
   solve.settled_position = kSettledPosition;
   solve.settled_rotation = kSettledRotation;
   optimise(solve);
+  learnInertialNoise();
   statistics.rejected_observations += gate.rejected;
   statistics.rejected_cameras = gate.cameras;
   statistics.contradicted = gate.contradicted;

@@ -13,6 +13,7 @@
 #include "parkade/vio/feature_manager.hpp"
 #include "parkade/vio/history.hpp"
 #include "parkade/vio/image_rest.hpp"
+#include "parkade/vio/inertial_noise.hpp"
 #include "parkade/vio/start_up.hpp"
 #include "parkade/vio/window.hpp"
 #include "parkade/vio/window_solver.hpp"
@@ -76,7 +77,9 @@ class VioEstimator::Impl {
   // Each frame set (estimator_frame.cpp, estimator.cpp).
   void addFrame(const TrackSet& tracks);
   void setImu(WindowFrame& frame, TimeNs begin_ns, const ImuBias& bias) const;
-  void sumHeldAgain();
+  void sumOutdatedAgain();
+  /// From the last frame but one, whose motion is known from both sides.
+  void learnInertialNoise();
   /// Where the readings since the frame before take a frame. Returns the covariance of its position
   /// (odom axes) and rotation relative to that frame.
   Eigen::Matrix<double, 6, 6> predictFrame(WindowFrame& frame, const WindowFrame& previous) const;
@@ -127,13 +130,15 @@ class VioEstimator::Impl {
   bool learns_sigmas_ = true;  // of the calibration
   bool is_car_ = false;        // the vehicle frame's origin is below a rear axle
   double wheel_track_ = 0.0;
-  ImuNoise noise_;
+  ImuNoise noise_;  // as told, with vio.imu_noise_factor
+  InertialNoise inertial_noise_;
   TimeNs gap_ns_ = 0;
   SE3 T_vehicle_imu_;
   Window window_;
   FeatureManager features_;
   VioHistory history_;
   ReadingBuffer readings_;
+  int isolated_readings_ = 0;
   std::deque<WheelSample> wheels_;
 
   bool initialised_ = false;

@@ -77,7 +77,7 @@ void VioEstimator::Impl::trimStartFrames() {
 SolveOptions VioEstimator::Impl::startOptions() const {
   SolveOptions solve = solveOptions(kStartIterations);
   // A first guess may be far off: convex, unlike the loss that follows.
-  solve.loss = {RobustLoss::Kernel::kHuber, kStartBend};
+  solve.loss.views = {RobustLoss::Kernel::kHuber, kStartBend};
   return solve;
 }
 

@@ -123,8 +123,9 @@ void VioEstimator::Impl::removeFrame(std::size_t index) {
   const WindowFrame* lasting = keyframeBefore(index);
   history_.addDropped(frame, lasting != nullptr ? *lasting : window_.frames.front());
   const Preintegration sum =
-      readings_.sumBetween(before.t_ns, after.t_ns, noise_, before.bias, gap_ns_);
+      readings_.sumBetween(before.t_ns, after.t_ns, inertial_noise_.noise(), before.bias, gap_ns_);
   dropFrame(window_, frame.id, sum);
+  window_.frames[index].imu_noise_factor = inertial_noise_.factor();
 }
 
 void VioEstimator::Impl::marginaliseOldestKeyframe() {

@@ -116,9 +116,20 @@ void LinearSystem::addImu(const Window& window, const FactorSelection& selection
     Matrix15d by_i;
     Matrix15d by_j;
     Matrix15x2d by_gravity;
-    const Vector15d r = imuResidual(window.frames[k - 1], window.frames[k], window.gravity, &by_i,
-                                    &by_j, &by_gravity);
-    cost_ += 0.5 * r.squaredNorm();
+    Vector15d r = imuResidual(window.frames[k - 1], window.frames[k], window.gravity, &by_i, &by_j,
+                              &by_gravity);
+    cost_ += 0.5 * r.head<9>().squaredNorm();
+    // Biases wander, and now and then they jump.
+    for (const int walk : {Preintegration::kBiasGyro, Preintegration::kBiasAccel}) {
+      const RobustValue term = logarithmic(r.segment<3>(walk).squaredNorm(), loss_.bias_step);
+      cost_ += 0.5 * term.rho;
+      if (term.weight == 1.0) continue;
+      const double root = std::sqrt(term.weight);
+      r.segment<3>(walk) *= root;
+      by_i.middleRows<3>(walk) *= root;
+      by_j.middleRows<3>(walk) *= root;
+      by_gravity.middleRows<3>(walk) *= root;
+    }
     b_.segment<kState>(kState * i).noalias() += by_i.transpose() * r;
     b_.segment<kState>(kState * j).noalias() += by_j.transpose() * r;
     addPair(i, j, by_i.transpose() * by_i, by_j.transpose() * by_i, by_j.transpose() * by_j);
@@ -239,7 +250,7 @@ void LinearSystem::addFeature(const Window& window, WindowFeature& feature,
     }
     const double weight = 1.0 / (feature.noise_factor * observation.sigma_px);
     Eigen::Vector2d r = weight * (pixel - observedPixel(window, observation));
-    const RobustValue term = loss_(r.squaredNorm());
+    const RobustValue term = loss_.views(r.squaredNorm());
     cost_ += 0.5 * term.rho;
     const double root = std::sqrt(term.weight);
     r *= root;

@@ -28,13 +28,22 @@ struct FactorSelection {
   static FactorSelection none(const Window& window);
 };
 
+/// What bounds the influence of single terms.
+struct WindowLoss {
+  RobustLoss views;  ///< of whitened reprojection errors
+  /// Of biases' whitened steps: quadratic to there, like a logarithm beyond. What is known of a
+  /// walk comes from seconds, so that the steps between frames stay below a hundredth of their
+  /// sigma; one of a sixth is part of a jump.
+  double bias_step = 0.32;
+};
+
 /// The cost of a window, squared about its present state: gradient and Gauss-Newton matrix of the
 /// frames, with the landmarks apart so that they can be eliminated (docs/math/residuals.md, eq.
 /// 11). The robust loss enters as weights. Frame i has rows 15 i to 15 i + 14, the window's globals
 /// the last ones.
 class LinearSystem {
  public:
-  LinearSystem(const RobustLoss& loss, const StillSigma& still) : loss_(loss), still_(still) {}
+  LinearSystem(const WindowLoss& loss, const StillSigma& still) : loss_(loss), still_(still) {}
 
   /// Evaluates residuals at the states and Jacobians at jacobianState(). Returns the cost.
   double linearise(const Window& window, const FactorSelection& selection);
@@ -96,7 +105,7 @@ class LinearSystem {
   }
   void addPair(int i, int j, const Matrix15d& hii, const Matrix15d& hji, const Matrix15d& hjj);
 
-  RobustLoss loss_;
+  WindowLoss loss_;
   StillSigma still_;
   double cost_ = 0.0;
   int num_observations_ = 0;

@@ -78,7 +78,7 @@ std::vector<std::size_t> involvedFrames(const Window& window, const FactorSelect
 
 FrameConditional marginaliseFrame(Window& window, int frame_id,
                                   const std::vector<WindowFeature*>& landmarks,
-                                  const RobustLoss& loss, const StillSigma& still) {
+                                  const WindowLoss& loss, const StillSigma& still) {
   const int found = window.indexOf(frame_id);
   PARKADE_CHECK(found >= 0, "frame {} is not in the window", frame_id);
   const auto index = static_cast<std::size_t>(found);

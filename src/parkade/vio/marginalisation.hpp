@@ -28,7 +28,7 @@ struct FrameConditional {
 /// linearisation fixed. docs/math/marginalisation.md, eqs. (1) to (4).
 FrameConditional marginaliseFrame(Window& window, int frame_id,
                                   const std::vector<WindowFeature*>& landmarks,
-                                  const RobustLoss& loss, const StillSigma& still);
+                                  const WindowLoss& loss, const StillSigma& still);
 
 /// Removes a frame that no prior refers to, and its observations; `imu` are the readings between
 /// its neighbours.

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
+#include "parkade/core/log.hpp"
 #include "parkade/core/random.hpp"
 #include "parkade/vio/estimator.hpp"
 #include "parkade/vio/track_simulator.hpp"
@@ -339,6 +341,66 @@ TEST(VioSurvival, PredictsTheNextFrame) {
   EXPECT_EQ(prior.previous_t_ns, previous);
   EXPECT_LT(prior.T_previous_current.translation().norm(), 0.01);
   EXPECT_GT(prior.p_previous.size(), 20U);
+}
+
+// An inertial unit that is not as told: pictures must not be taken for wrong.
+void expectDrivenWell(const SimulatedDrive& drive, const std::string& what) {
+  const DriveScore s = score(drive, run(drive));
+  EXPECT_LT(s.end_error, 0.25) << what;
+  EXPECT_LT(s.mean_nees_position, 12.0) << what;
+}
+
+TEST(VioSurvival, InertialBiasesJump) {
+  struct Jump {
+    double gyro;   // deg/s
+    double accel;  // m/s^2
+  };
+  for (const Jump& jump : {Jump{0.3, 0.1}, Jump{1.0, 0.0}, Jump{0.0, 0.1}, Jump{-0.1, 0.2}}) {
+    SimulatedDrive drive = shortDrive(60.0);
+    const TimeNs first = drive.frames.front().t_ns;
+    for (ImuSample& s : drive.imu) {
+      if (toSeconds(s.t_ns - first) < 6.0) continue;
+      s.gyro += Eigen::Vector3d::Constant(jump.gyro * std::numbers::pi / 180.0);
+      s.accel += Eigen::Vector3d::Constant(jump.accel);
+    }
+    expectDrivenWell(drive, fmt::format("{} deg/s, {} m/s^2", jump.gyro, jump.accel));
+  }
+}
+
+TEST(VioSurvival, InertialUnitIsTenTimesNoisierThanTold) {
+  SimulatedDrive drive = shortDrive(60.0);
+  Random random(6);
+  for (ImuSample& s : drive.imu) {
+    for (int axis = 0; axis < 3; ++axis) {
+      s.gyro(axis) += 0.02 * random.normal();
+      s.accel(axis) += 0.3 * random.normal();
+    }
+  }
+  expectDrivenWell(drive, "noise");
+}
+
+TEST(VioSurvival, InertialUnitSitsTurnedAndItsScaleIsWrong) {
+  SimulatedDrive drive = shortDrive(60.0);
+  const double turn = 2.0 * std::numbers::pi / 180.0;
+  const SO3 turned = SO3::exp(Eigen::Vector3d(0.0, turn, turn));
+  for (ImuSample& s : drive.imu) {
+    s.gyro = 1.01 * (turned * s.gyro);
+    s.accel = turned * s.accel;
+  }
+  expectDrivenWell(drive, "turned");
+}
+
+TEST(VioSurvival, SingleInertialReadingsAreBroken) {
+  SimulatedDrive drive = shortDrive(60.0);
+  Random random(7);
+  for (ImuSample& s : drive.imu) {
+    if (!random.chance(0.005)) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      s.gyro(axis) += 3.0 * random.normal();
+      s.accel(axis) += 50.0 * random.normal();
+    }
+  }
+  expectDrivenWell(drive, "broken");
 }
 
 }  // namespace

@@ -63,7 +63,8 @@ struct WindowFrame {
   /// Readings since the frame before it in the window; absent where the prior holds that link.
   std::optional<Preintegration> imu;
   Matrix15d imu_sqrt_information = Matrix15d::Zero();
-  bool imu_tail_held = false;  ///< the last reading was held: no later one was known yet
+  double imu_noise_factor = 1.0;  ///< that they were summed with (InertialNoise)
+  bool imu_outdated = false;      ///< to be summed again: readings came, or were left out, since
 
   int still_since = -1;  ///< id of the frame where the car came to rest; -1 in motion
 

@@ -11,7 +11,7 @@ namespace parkade {
 
 struct SolveOptions {
   int max_iterations = 2;
-  RobustLoss loss;  ///< of whitened reprojection errors
+  WindowLoss loss;
   StillSigma still;
   /// Ends the solve once a step promises to lower the cost (half the chi-square) by less.
   double min_decrease = 1e-2;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "parkade/core/median.hpp"
 #include "parkade/core/random.hpp"
@@ -89,6 +90,8 @@ SolveOptions tightOptions() {
   SolveOptions options;
   options.max_iterations = 50;
   options.min_decrease = 1e-10;
+  // The windows' biases step at will.
+  options.loss.bias_step = std::numeric_limits<double>::infinity();
   return options;
 }
 
@@ -247,7 +250,7 @@ TEST(WindowSolver, FindsTheMinimumThatCeresFinds) {
       const std::size_t second = a != t ? t : (a + 1) % x.size();
       problem.AddResidualBlock(
           new ceres::NumericDiffCostFunction<PixelCost, ceres::CENTRAL, 2, 16, 16, 3>(functor),
-          new ceres::HuberLoss(options.loss.scale), x[a].data(), x[second].data(),
+          new ceres::HuberLoss(options.loss.views.scale), x[a].data(), x[second].data(),
           landmarks[f].data());
     }
   }
@@ -336,7 +339,7 @@ TEST_P(WindowGradient, IsThatOfTheCost) {
   FactorSelection selection = FactorSelection::all(window);
   selection.features = features;
   const StillSigma still;
-  const RobustLoss loss{RobustLoss::Kernel::kCauchy, 0.6};
+  const WindowLoss loss{{RobustLoss::Kernel::kCauchy, 0.6}};
   LinearSystem system(loss, still);
   system.linearise(window, selection);
   const auto costAt = [&](const Eigen::VectorXd& step) {
