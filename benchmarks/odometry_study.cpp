@@ -20,6 +20,7 @@
 #include "parkade/core/units.hpp"
 #include "parkade/eval/association.hpp"
 #include "parkade/geometry/se2.hpp"
+#include "parkade/io/sequence_files.hpp"
 #include "parkade/io/sequence_reader.hpp"
 #include "parkade/pipeline/mapping_run.hpp"
 #include "parkade/vio/rig_error.hpp"
@@ -36,6 +37,7 @@ struct Arguments {
   std::string out;
   std::vector<double> calib_error;
   int repeat = 1;
+  bool read_imu = false;
   bool per_drive = false;
 };
 
@@ -98,7 +100,13 @@ Status load(const Arguments& arguments, Drive& drive) {
   const std::string cache = drive.path + "/" + arguments.name;
   if (std::filesystem::exists(cache)) {
     CacheReader file(cache);
-    if (pass(file, drive)) return {};
+    if (pass(file, drive)) {
+      if (!arguments.read_imu) return {};
+      auto readings = readImuTable(drive.path + "/mav0/imu0/data.csv");
+      if (!readings) return readings.error();
+      drive.imu = std::move(readings->rows);
+      return {};
+    }
     drive.frames.clear();  // cut off, or another's: tracked anew
     drive.imu.clear();
     drive.wheel.clear();
@@ -310,6 +318,9 @@ int main(int argc, char** argv) {
                  "Judge each drive so often, its tracks shaken by 0.02 px")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
+  app.add_flag("--read-imu", arguments.read_imu,
+               "Inertial readings of mav0/imu0 instead of those kept with the tracks, as of copies "
+               "that tools/damage_recording.py made");
   app.add_option("--out", arguments.out, "Write the trajectories into this folder");
   app.add_flag("--drives", arguments.per_drive, "Print every drive, not the mean alone");
   CLI11_PARSE(app, argc, argv);
