@@ -34,7 +34,8 @@ def make_recording(folder):
         (data.parent / "data.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
     for sensor in ("imu0", "wheel0"):
         (folder / "mav0" / sensor).mkdir()
-        rows = ["#t"] + [f"{FIRST + i * STEP // 10},1,2" for i in range(400)]
+        values = "0.1,0,0,0,0,9.8" if sensor == "imu0" else "1,2"
+        rows = ["#t"] + [f"{FIRST + i * STEP // 10},{values}" for i in range(400)]
         table = folder / "mav0" / sensor / "data.csv"
         table.write_text("\n".join(rows) + "\n", encoding="utf-8")
     (folder / "truth").mkdir()
@@ -111,6 +112,23 @@ class DamageRecording(unittest.TestCase):
         self.damage("imu_gap:begin=1,seconds=1", "no_wheels")
         self.assertEqual(len(rows_of(self.out, "imu0")), 300)
         self.assertFalse((self.out / "mav0" / "wheel0").exists())
+
+    def test_inertial_units_that_are_not_as_told(self):
+        self.damage("imu_scale:share=0.5", "imu_bias:begin=1,gyro=1,accel=0", "imu_broken:count=7")
+        readings = np.array(rows_of(self.out, "imu0"), dtype=float)[:, 1:]
+        early, late = np.median(readings[:100], axis=0), np.median(readings[100:], axis=0)
+        np.testing.assert_allclose(early, [0.15, 0, 0, 0, 0, 14.7])
+        np.testing.assert_allclose(late, [1.15, 1, 1, 0, 0, 14.7])
+        usual = np.where(np.arange(400)[:, None] < 100, early, late)
+        self.assertEqual(np.count_nonzero(np.abs(readings - usual).max(axis=1) > 1e-9), 7)
+        self.assertEqual(rows_of(self.out, "wheel0"), rows_of(self.sequence, "wheel0"))
+
+    def test_an_inertial_unit_that_is_turned_measures_the_same_lengths(self):
+        self.damage("imu_turned:deg=30")
+        reading = np.array(rows_of(self.out, "imu0")[0][1:], dtype=float)
+        self.assertAlmostEqual(np.linalg.norm(reading[:3]), 0.1)
+        self.assertAlmostEqual(np.linalg.norm(reading[3:]), 9.8)
+        self.assertLess(reading[5], 8.6)
 
     def test_wrong_arguments_are_named(self):
         for fault, word in [

@@ -19,6 +19,11 @@ Faults, with their defaults; begin counts seconds from the first picture:
     late:ms=10                              pictures are stamped later than they were taken
     jitter:ms=2                             their stamps are unsure (standard deviation)
     imu_gap:begin=30,seconds=0.5            the inertial unit is silent
+    imu_noise:gyro=0.02,accel=0.3           its readings are noisier (standard deviations, rad/s, m/s^2)
+    imu_bias:begin=30,gyro=0.005,accel=0.1  its biases jump by that much along each axis
+    imu_scale:share=0.01                    its scales are wrong
+    imu_turned:deg=2                        it sits turned about z and y
+    imu_broken:count=20                     single readings are broken
     wheel_gap:begin=30,seconds=5            the wheels are silent
     no_wheels                               there are none
 
@@ -46,6 +51,11 @@ DEFAULTS = {
     "late": {"ms": 10.0},
     "jitter": {"ms": 2.0},
     "imu_gap": {"begin": 30.0, "seconds": 0.5},
+    "imu_noise": {"gyro": 0.02, "accel": 0.3},
+    "imu_bias": {"begin": 30.0, "gyro": 0.005, "accel": 0.1},
+    "imu_scale": {"share": 0.01},
+    "imu_turned": {"deg": 2.0},
+    "imu_broken": {"count": 20.0},
     "wheel_gap": {"begin": 30.0, "seconds": 5.0},
     "no_wheels": {},
 }
@@ -179,6 +189,33 @@ class Camera:
                 path.symlink_to((self.folder / "data" / name).resolve())
 
 
+def damage_readings(table, fault, settings, first, random):
+    """Readings of an inertial unit that is not as it should be."""
+    values = np.array([[float(value) for value in row[1:]] for row in table.rows])
+    gyro, accel = values[:, :3], values[:, 3:6]
+    if fault == "imu_noise":
+        gyro += random.normal(0.0, settings["gyro"], gyro.shape)
+        accel += random.normal(0.0, settings["accel"], accel.shape)
+    elif fault == "imu_bias":
+        late = np.array(table.stamps()) >= first + int(settings["begin"] * NS)
+        gyro[late] += settings["gyro"]
+        accel[late] += settings["accel"]
+    elif fault == "imu_scale":
+        values *= 1.0 + settings["share"]
+    elif fault == "imu_turned":
+        c, s = np.cos(np.radians(settings["deg"])), np.sin(np.radians(settings["deg"]))
+        turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+        gyro[:] = gyro @ turn.T
+        accel[:] = accel @ turn.T
+    elif fault == "imu_broken":
+        count = min(int(settings["count"]), len(values))
+        broken = random.choice(len(values), count, replace=False)
+        gyro[broken] += random.normal(0.0, 3.0, (count, 3))
+        accel[broken] += random.normal(0.0, 50.0, (count, 3))
+    for row, value in zip(table.rows, values):
+        row[1:] = [repr(float(v)) for v in value]
+
+
 def copy_rest(source, target, done):
     """All that is no sensor's folder, as links."""
     for entry in sorted(source.iterdir()):
@@ -211,6 +248,9 @@ def damage(source, target, faults, seed):
             tables[sensor].drop(*span(settings, first))
         if fault == "no_wheels":
             tables.pop("wheel0", None)
+        if fault in ("imu_noise", "imu_bias", "imu_scale", "imu_turned", "imu_broken") and "imu0" in tables:
+            random = np.random.default_rng([seed, len(cameras)])
+            damage_readings(tables["imu0"], fault, settings, first, random)
     target.mkdir(parents=True)
     for number, camera in enumerate(cameras):
         random = np.random.default_rng([seed, number])
