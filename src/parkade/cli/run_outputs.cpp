@@ -64,6 +64,7 @@ nlohmann::json metricsJson(const RunDescription& description, const MappingRun& 
   json["mean_tracks"] = summary.mean_tracks;
   json["images"] = summary.images;
   json["pictures_repeated"] = summary.pictures_repeated;
+  json["imu_noise_factor"] = health.imuNoiseFactor();
   for (const Health h :
        {Health::kInitialising, Health::kTracking, Health::kDegraded, Health::kLost}) {
     json["health"][toString(h)] = health.frames(h);
@@ -127,6 +128,12 @@ void HealthLog::onPose(const PoseEvent& event) {
   if (e.health == Health::kInitialising) return;
   covariances_.push_back({e.t_ns, e.covariance.topLeftCorner<6, 6>()});
   if (!first_pose_t_ns_) first_pose_t_ns_ = e.t_ns;
+  imu_noise_factors_ += event.statistics.imu_noise_factor;
+  ++poses_;
+}
+
+double HealthLog::imuNoiseFactor() const {
+  return poses_ > 0 ? imu_noise_factors_ / poses_ : 1.0;
 }
 
 std::optional<double> HealthLog::startUpSeconds() const {

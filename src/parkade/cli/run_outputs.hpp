@@ -23,6 +23,8 @@ class HealthLog : public PipelineObserver {
   [[nodiscard]] int frames(Health health) const { return frames_[static_cast<int>(health)]; }
   /// Seconds from the first frame set to the first pose; nothing where there is none.
   [[nodiscard]] std::optional<double> startUpSeconds() const;
+  /// Mean over the poses: how many times larger the inertial unit's errors are than told.
+  [[nodiscard]] double imuNoiseFactor() const;
 
  private:
   std::string text_;
@@ -30,6 +32,8 @@ class HealthLog : public PipelineObserver {
   int frames_[4] = {};
   TimeNs first_t_ns_ = 0;
   std::optional<TimeNs> first_pose_t_ns_;
+  double imu_noise_factors_ = 0.0;
+  int poses_ = 0;
 };
 
 /// Draws every frame set's tracks into a folder, as NNNNNN.jpg, in place of those of an earlier

@@ -113,6 +113,16 @@ std::string clockText(const Rig& rig, const std::vector<CameraCalibrationEstimat
       text);
 }
 
+// Where the inertial unit is not as told.
+std::string inertialText(double noise_factor) {
+  constexpr double kNotable = 1.2;
+  if (noise_factor < kNotable) return "";
+  return fmt::format(
+      "the inertial unit errs {:.1f} times as much as its noise in rig.yaml says, on average: is "
+      "it mounted as told there, are its scales right, does it shake?\n",
+      noise_factor);
+}
+
 Result<OpenedSource> openInput(const RunArguments& arguments, RunMethod method) {
   SourceRequest request = arguments.source;
   request.decode_threads = arguments.threads > 1 ? 1 : 0;
@@ -254,8 +264,8 @@ Status runSequence(RunArguments arguments) {
   fmt::print("{}", timingTable(summary));
   fmt::print("{} frame sets, {} poses, {:.0f} tracks per frame set; wrote {}\n", summary.frame_sets,
              summary.poses, summary.mean_tracks, arguments.out);
-  fmt::print("{}{}", troubleText(health, arguments.out),
-             clockText(opened->rig, (*run)->calibration()));
+  fmt::print("{}{}{}", troubleText(health, arguments.out),
+             clockText(opened->rig, (*run)->calibration()), inertialText(health.imuNoiseFactor()));
   if (!outcome) {
     return Error{fmt::format("{} (the poses up to there are in {})", outcome.error().message,
                              arguments.out)};

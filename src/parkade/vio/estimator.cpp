@@ -95,10 +95,11 @@ void VioEstimator::Impl::addImu(const ImuSample& sample) {
         "broken transfer does; others like it are left out silently",
         *isolated);
   }
+  const TimeNs broken = *isolated;
   for (std::size_t i = 1; i < window_.frames.size(); ++i) {
-    const bool affected =
-        *isolated<window_.frames[i].t_ns + kReach&& * isolated> window_.frames[i - 1].t_ns - kReach;
-    if (affected) window_.frames[i].imu_outdated = true;
+    const bool before_end = broken < window_.frames[i].t_ns + kReach;
+    const bool after_begin = broken + kReach > window_.frames[i - 1].t_ns;
+    if (before_end && after_begin) window_.frames[i].imu_outdated = true;
   }
 }
 

@@ -28,9 +28,10 @@ struct VioStatistics {
   int rejected_observations = 0;
   std::vector<int> rejected_cameras;  ///< that contradict the prediction as a whole
   bool standstill = false;
-  bool contradicted = false;  ///< by most cameras: the prediction
-  double span_s = 0.0;        ///< from the window's oldest frame to its newest
-  int imu_readings = 0;       ///< kept
+  bool contradicted = false;      ///< by most cameras: the prediction
+  double span_s = 0.0;            ///< from the window's oldest frame to its newest
+  int imu_readings = 0;           ///< kept
+  double imu_noise_factor = 1.0;  ///< how many times larger the unit's errors are than told
 };
 
 /// Where a camera sits on the car and how its clock is off, as refined online.

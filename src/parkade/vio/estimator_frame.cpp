@@ -119,6 +119,7 @@ void VioEstimator::Impl::addFrame(const TrackSet& tracks) {
   solve.settled_rotation = kSettledRotation;
   optimise(solve);
   learnInertialNoise();
+  statistics.imu_noise_factor = inertial_noise_.factor();
   statistics.rejected_observations += gate.rejected;
   statistics.rejected_cameras = gate.cameras;
   statistics.contradicted = gate.contradicted;
