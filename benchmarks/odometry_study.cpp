@@ -20,6 +20,7 @@
 #include "parkade/core/units.hpp"
 #include "parkade/eval/association.hpp"
 #include "parkade/geometry/se2.hpp"
+#include "parkade/io/file.hpp"
 #include "parkade/io/sequence_files.hpp"
 #include "parkade/io/sequence_reader.hpp"
 #include "parkade/pipeline/mapping_run.hpp"
@@ -102,7 +103,7 @@ Status load(const Arguments& arguments, Drive& drive) {
     CacheReader file(cache);
     if (pass(file, drive)) {
       if (!arguments.read_imu) return {};
-      auto readings = readImuTable(drive.path + "/mav0/imu0/data.csv");
+      auto readings = readImuTable(joinPath(sensorFolder(drive.path, "imu0"), "data.csv"));
       if (!readings) return readings.error();
       drive.imu = std::move(readings->rows);
       return {};

@@ -7,15 +7,10 @@ import subprocess
 import sys
 import tempfile
 
+from command import run
+
 SEQUENCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "shared", "data",
                         "euroc_mh01_16s")
-
-
-def run(*command):
-    result = subprocess.run(command, capture_output=True, text=True, timeout=1200)
-    if result.returncode != 0:
-        sys.exit(f"{command[0]}: exit {result.returncode}\n{result.stdout}{result.stderr}")
-    return result.stdout
 
 
 def main():

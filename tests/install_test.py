@@ -4,16 +4,10 @@
 """Installs a build, then builds the examples against it as somebody else's project would, and runs
 one: install_test.py BUILD_FOLDER SOURCE_FOLDER MAP_WRITER"""
 import os
-import subprocess
 import sys
 import tempfile
 
-
-def run(*command, **options):
-    result = subprocess.run(command, capture_output=True, text=True, timeout=1200, **options)
-    if result.returncode != 0:
-        sys.exit(f"{' '.join(command)}: exit {result.returncode}\n{result.stdout}{result.stderr}")
-    return result.stdout
+from command import run
 
 
 def main():

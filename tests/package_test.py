@@ -4,16 +4,10 @@
 """Makes the Debian packages of a build and runs the program out of one: package_test.py BUILD_FOLDER"""
 import pathlib
 import shutil
-import subprocess
 import sys
 import tempfile
 
-
-def run(*command, **options):
-    result = subprocess.run(command, capture_output=True, text=True, timeout=600, **options)
-    if result.returncode != 0:
-        sys.exit(f"{command}: exit {result.returncode}\n{result.stdout}{result.stderr}")
-    return result.stdout
+from command import run
 
 
 def field(package, name):

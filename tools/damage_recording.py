@@ -189,31 +189,44 @@ class Camera:
                 path.symlink_to((self.folder / "data" / name).resolve())
 
 
-def damage_readings(table, fault, settings, first, random):
-    """Readings of an inertial unit that is not as it should be."""
-    values = np.array([[float(value) for value in row[1:]] for row in table.rows])
-    gyro, accel = values[:, :3], values[:, 3:6]
-    if fault == "imu_noise":
-        gyro += random.normal(0.0, settings["gyro"], gyro.shape)
-        accel += random.normal(0.0, settings["accel"], accel.shape)
-    elif fault == "imu_bias":
-        late = np.array(table.stamps()) >= first + int(settings["begin"] * NS)
-        gyro[late] += settings["gyro"]
-        accel[late] += settings["accel"]
-    elif fault == "imu_scale":
-        values *= 1.0 + settings["share"]
-    elif fault == "imu_turned":
+class Readings:
+    """Those of an inertial unit; a method for each fault of it, named alike."""
+
+    def __init__(self, table, first):
+        self.table = table
+        self.first = first
+        self.values = np.array([[float(value) for value in row[1:]] for row in table.rows])
+        self.gyro, self.accel = self.values[:, :3], self.values[:, 3:6]
+
+    def imu_noise(self, settings, random):
+        self.gyro += random.normal(0.0, settings["gyro"], self.gyro.shape)
+        self.accel += random.normal(0.0, settings["accel"], self.accel.shape)
+
+    def imu_bias(self, settings, _):
+        late = np.array(self.table.stamps()) >= self.first + int(settings["begin"] * NS)
+        self.gyro[late] += settings["gyro"]
+        self.accel[late] += settings["accel"]
+
+    def imu_scale(self, settings, _):
+        self.values *= 1.0 + settings["share"]
+
+    def imu_turned(self, settings, _):
         c, s = np.cos(np.radians(settings["deg"])), np.sin(np.radians(settings["deg"]))
-        turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
-        gyro[:] = gyro @ turn.T
-        accel[:] = accel @ turn.T
-    elif fault == "imu_broken":
-        count = min(int(settings["count"]), len(values))
-        broken = random.choice(len(values), count, replace=False)
-        gyro[broken] += random.normal(0.0, 3.0, (count, 3))
-        accel[broken] += random.normal(0.0, 50.0, (count, 3))
-    for row, value in zip(table.rows, values):
-        row[1:] = [repr(float(v)) for v in value]
+        about_z = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+        about_y = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+        turn = about_z @ about_y
+        self.gyro[:] = self.gyro @ turn.T
+        self.accel[:] = self.accel @ turn.T
+
+    def imu_broken(self, settings, random):
+        count = min(int(settings["count"]), len(self.values))
+        broken = random.choice(len(self.values), count, replace=False)
+        self.gyro[broken] += random.normal(0.0, 3.0, (count, 3))
+        self.accel[broken] += random.normal(0.0, 50.0, (count, 3))
+
+    def store(self):
+        for row, value in zip(self.table.rows, self.values):
+            row[1:] = [repr(float(v)) for v in value]
 
 
 def copy_rest(source, target, done):
@@ -248,9 +261,10 @@ def damage(source, target, faults, seed):
             tables[sensor].drop(*span(settings, first))
         if fault == "no_wheels":
             tables.pop("wheel0", None)
-        if fault in ("imu_noise", "imu_bias", "imu_scale", "imu_turned", "imu_broken") and "imu0" in tables:
-            random = np.random.default_rng([seed, len(cameras)])
-            damage_readings(tables["imu0"], fault, settings, first, random)
+        if hasattr(Readings, fault) and "imu0" in tables:
+            readings = Readings(tables["imu0"], first)
+            getattr(readings, fault)(settings, np.random.default_rng([seed, len(cameras)]))
+            readings.store()
     target.mkdir(parents=True)
     for number, camera in enumerate(cameras):
         random = np.random.default_rng([seed, number])

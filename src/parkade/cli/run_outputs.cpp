@@ -129,11 +129,11 @@ void HealthLog::onPose(const PoseEvent& event) {
   covariances_.push_back({e.t_ns, e.covariance.topLeftCorner<6, 6>()});
   if (!first_pose_t_ns_) first_pose_t_ns_ = e.t_ns;
   imu_noise_factors_ += event.statistics.imu_noise_factor;
-  ++poses_;
 }
 
 double HealthLog::imuNoiseFactor() const {
-  return poses_ > 0 ? imu_noise_factors_ / poses_ : 1.0;
+  if (covariances_.empty()) return 1.0;
+  return imu_noise_factors_ / static_cast<double>(covariances_.size());
 }
 
 std::optional<double> HealthLog::startUpSeconds() const {

@@ -32,8 +32,7 @@ class HealthLog : public PipelineObserver {
   int frames_[4] = {};
   TimeNs first_t_ns_ = 0;
   std::optional<TimeNs> first_pose_t_ns_;
-  double imu_noise_factors_ = 0.0;
-  int poses_ = 0;
+  double imu_noise_factors_ = 0.0;  // sum over the poses
 };
 
 /// Draws every frame set's tracks into a folder, as NNNNNN.jpg, in place of those of an earlier

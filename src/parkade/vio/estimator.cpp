@@ -89,16 +89,16 @@ void VioEstimator::Impl::addImu(const ImuSample& sample) {
   }
   const std::optional<TimeNs> isolated = readings_.dropIsolated();
   if (!isolated) return;
-  if (isolated_readings_++ == 0) {
+  if (!told_of_isolated_) {
+    told_of_isolated_ = true;
     logWarning(
         "IMU reading at {} ns left out: it stands apart from those before and after it, as a "
         "broken transfer does; others like it are left out silently",
         *isolated);
   }
-  const TimeNs broken = *isolated;
   for (std::size_t i = 1; i < window_.frames.size(); ++i) {
-    const bool before_end = broken < window_.frames[i].t_ns + kReach;
-    const bool after_begin = broken + kReach > window_.frames[i - 1].t_ns;
+    const bool before_end = *isolated < window_.frames[i].t_ns + kReach;
+    const bool after_begin = *isolated + kReach > window_.frames[i - 1].t_ns;
     if (before_end && after_begin) window_.frames[i].imu_outdated = true;
   }
 }

@@ -138,7 +138,7 @@ class VioEstimator::Impl {
   FeatureManager features_;
   VioHistory history_;
   ReadingBuffer readings_;
-  int isolated_readings_ = 0;
+  bool told_of_isolated_ = false;
   std::deque<WheelSample> wheels_;
 
   bool initialised_ = false;

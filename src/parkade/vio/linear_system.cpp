@@ -123,7 +123,6 @@ void LinearSystem::addImu(const Window& window, const FactorSelection& selection
     for (const int walk : {Preintegration::kBiasGyro, Preintegration::kBiasAccel}) {
       const RobustValue term = logarithmic(r.segment<3>(walk).squaredNorm(), loss_.bias_step);
       cost_ += 0.5 * term.rho;
-      if (term.weight == 1.0) continue;
       const double root = std::sqrt(term.weight);
       r.segment<3>(walk) *= root;
       by_i.middleRows<3>(walk) *= root;

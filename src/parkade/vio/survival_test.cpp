@@ -343,6 +343,14 @@ TEST(VioSurvival, PredictsTheNextFrame) {
   EXPECT_GT(prior.p_previous.size(), 20U);
 }
 
+// By errors of so many rad/s and m/s^2, standard deviations.
+void disturb(ImuSample& sample, double gyro, double accel, Random& random) {
+  for (int axis = 0; axis < 3; ++axis) {
+    sample.gyro(axis) += gyro * random.normal();
+    sample.accel(axis) += accel * random.normal();
+  }
+}
+
 // An inertial unit that is not as told: pictures must not be taken for wrong.
 void expectDrivenWell(const SimulatedDrive& drive, const std::string& what,
                       double least_noise_factor = 1.0) {
@@ -360,9 +368,8 @@ TEST(VioSurvival, InertialBiasesJump) {
   };
   for (const Jump& jump : {Jump{0.3, 0.1}, Jump{1.0, 0.0}, Jump{0.0, 0.1}, Jump{-0.1, 0.2}}) {
     SimulatedDrive drive = shortDrive(60.0);
-    const TimeNs first = drive.frames.front().t_ns;
     for (ImuSample& s : drive.imu) {
-      if (toSeconds(s.t_ns - first) < 6.0) continue;
+      if (secondsOf(drive, s.t_ns) < 6.0) continue;
       s.gyro += Eigen::Vector3d::Constant(jump.gyro * std::numbers::pi / 180.0);
       s.accel += Eigen::Vector3d::Constant(jump.accel);
     }
@@ -373,12 +380,7 @@ TEST(VioSurvival, InertialBiasesJump) {
 TEST(VioSurvival, InertialUnitIsTenTimesNoisierThanTold) {
   SimulatedDrive drive = shortDrive(60.0);
   Random random(6);
-  for (ImuSample& s : drive.imu) {
-    for (int axis = 0; axis < 3; ++axis) {
-      s.gyro(axis) += 0.02 * random.normal();
-      s.accel(axis) += 0.3 * random.normal();
-    }
-  }
+  for (ImuSample& s : drive.imu) disturb(s, 0.02, 0.3, random);
   expectDrivenWell(drive, "noise", 3.0);
 }
 
@@ -397,11 +399,7 @@ TEST(VioSurvival, SingleInertialReadingsAreBroken) {
   SimulatedDrive drive = shortDrive(60.0);
   Random random(7);
   for (ImuSample& s : drive.imu) {
-    if (!random.chance(0.005)) continue;
-    for (int axis = 0; axis < 3; ++axis) {
-      s.gyro(axis) += 3.0 * random.normal();
-      s.accel(axis) += 50.0 * random.normal();
-    }
+    if (random.chance(0.005)) disturb(s, 3.0, 50.0, random);
   }
   expectDrivenWell(drive, "broken");
 }
