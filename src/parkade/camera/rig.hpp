@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -14,6 +15,12 @@
 
 namespace parkade {
 
+/// How long after the middle row one of height rows is taken, s, where all take readout_time. What
+/// lies above or below the picture counts as its first or last row.
+inline double rowTimeOf(double readout_time, double row, int height) {
+  return height > 1 ? readout_time * (std::clamp(row / (height - 1), 0.0, 1.0) - 0.5) : 0.0;
+}
+
 /// One camera of a rig.
 struct RigCamera {
   std::string name;  ///< folder name in a sequence: cam0, cam1, ...
@@ -22,9 +29,17 @@ struct RigCamera {
   double position_sigma = 0.0;  ///< m, of T_vehicle_cam's place along each axis; 0: not told
   double rotation_sigma = 0.0;  ///< rad, of its turn about each axis; 0: not told
   TimeNs time_offset_ns = 0;    ///< added to a recorded stamp gives the time on the IMU's clock
-  double rate_hz = 0.0;         ///< 0 where unknown
-  std::string mask_path;        ///< 8-bit picture, 0 where the own body hides the world; or empty
+  /// s from the first row to the last, of a rolling shutter; a stamp is then the middle row's. 0:
+  /// all rows at once.
+  double readout_time = 0.0;
+  double rate_hz = 0.0;   ///< 0 where unknown
+  std::string mask_path;  ///< 8-bit picture, 0 where the own body hides the world; or empty
   std::vector<std::uint8_t> mask_pixels;  ///< the same row by row where there is no file; or empty
+
+  /// How long after the stamp a row is taken, s; before it where negative.
+  [[nodiscard]] double rowTime(double row) const {
+    return rowTimeOf(readout_time, row, camera.height());
+  }
 };
 
 /// Where the IMU sits and how noisy it is (continuous-time densities, Kalibr's field names).

@@ -34,7 +34,7 @@ std::string relative(const std::string& path, const std::string& file) {
 RigCamera readRigCamera(const YamlNode& node) {
   node.allowOnly({"name", "camera_model", "intrinsics", "distortion_model", "distortion_coeffs",
                   "cam2world_coeffs", "resolution", "T_vehicle_cam", "position_sigma",
-                  "rotation_sigma_deg", "time_offset", "rate", "mask"});
+                  "rotation_sigma_deg", "time_offset", "readout_time", "rate", "mask"});
   RigCamera camera;
   camera.name = node.at("name").asString();
   if (camera.name.empty() || camera.name.find('/') != std::string::npos) {
@@ -53,6 +53,15 @@ RigCamera readRigCamera(const YamlNode& node) {
       node.at("time_offset").fail(fmt::format("{} s is beyond {} s", seconds, kMaxSeconds));
     }
     camera.time_offset_ns = fromSeconds(seconds);
+  }
+  if (node.has("readout_time")) {
+    camera.readout_time = readPositive(node.at("readout_time"));
+    constexpr double kMaxReadout = 0.2;
+    if (camera.readout_time > kMaxReadout) {
+      node.at("readout_time")
+          .fail(fmt::format("{} s from the first row to the last is beyond {} s (is it in ms?)",
+                            camera.readout_time, kMaxReadout));
+    }
   }
   if (node.has("rate")) camera.rate_hz = readPositive(node.at("rate"));
   if (node.has("mask")) camera.mask_path = resolved(node.at("mask").asString(), node.file());
@@ -138,6 +147,9 @@ std::string writeRigNode(const Rig& rig, const std::string& path) {
     }
     if (camera.time_offset_ns != 0) {
       text += fmt::format("{}time_offset: {}\n", indent, seconds(camera.time_offset_ns));
+    }
+    if (camera.readout_time > 0.0) {
+      text += fmt::format("{}readout_time: {}\n", indent, camera.readout_time);
     }
     if (camera.rate_hz > 0.0) text += fmt::format("{}rate: {}\n", indent, camera.rate_hz);
     if (!camera.mask_path.empty()) {

@@ -125,6 +125,7 @@ Rig randomRig(Random& random) {
         SE3(SO3::exp({number(), number(), number()}), {number(), number(), number()});
     camera.time_offset_ns = random.integer(-1'000'000'000, 1'000'000'000);
     camera.rate_hz = 10.0 / 3.0;
+    camera.readout_time = i == 0 ? 0.0 : 0.1 / 3.0;
     rig.cameras.push_back(camera);
   }
   rig.imu.T_vehicle_imu = rig.cameras[0].T_vehicle_cam;
@@ -155,6 +156,7 @@ TEST_F(RigYaml, WritesWhatItReadsBackExactly) {
       EXPECT_DOUBLE_EQ(a.rotation_sigma, b.rotation_sigma);
       EXPECT_EQ(a.time_offset_ns, b.time_offset_ns);
       EXPECT_EQ(a.rate_hz, b.rate_hz);
+      EXPECT_EQ(a.readout_time, b.readout_time);
       EXPECT_EQ(a.T_vehicle_cam.translation(), b.T_vehicle_cam.translation());
       EXPECT_LT((a.T_vehicle_cam.matrix() - b.T_vehicle_cam.matrix()).cwiseAbs().maxCoeff(), 2e-15);
       // The same model to the bit projects to the same bits.
@@ -316,9 +318,24 @@ INSTANTIATE_TEST_SUITE_P(
                  "-0.0125",
                  "1e12",
                  {"rig.yaml:21: cameras[0].time_offset:", "1000000000000"}},
+        BadInput{"ReadoutInMilliseconds",
+                 "    rate: 10",
+                 "    readout_time: 30",
+                 {"rig.yaml:22: cameras[0].readout_time:", "30 s", "ms"}},
         BadInput{"VehicleWithoutWidth", "  width: 1.8\n", "", {"vehicle: missing key 'width'"}},
         BadInput{"NotYaml", "cameras:", "cameras: [", {"rig.yaml", "not valid YAML"}}),
     [](const auto& test) { return std::string(test.param.name); });
+
+TEST(RigCamera, ReadsItsRowsAboutTheStamp) {
+  RigCamera camera;
+  camera.camera = Camera(PinholeEquidistant({300.0, 300.0, 320.0, 200.0}), 640, 401);
+  EXPECT_EQ(camera.rowTime(17.0), 0.0);
+  camera.readout_time = 0.03;
+  EXPECT_DOUBLE_EQ(camera.rowTime(0.0), -0.015);
+  EXPECT_DOUBLE_EQ(camera.rowTime(200.0), 0.0);
+  EXPECT_DOUBLE_EQ(camera.rowTime(400.0), 0.015);
+  EXPECT_DOUBLE_EQ(camera.rowTime(4000.0), 0.015);
+}
 
 TEST_F(RigYaml, RefusesAnEmptyListOfCameras) {
   const std::string text = std::string(kRig);

@@ -104,6 +104,8 @@ void addSpecOptions(CLI::App& command, Arguments& arguments) {
       "One sample per pixel, 2 x 2 only where a surface ends");
   addField(command, arguments, "--motion-blur", "motion_blur", "N",
            "Sub-frames within an exposure [1: none]");
+  addField(command, arguments, "--readout-ms", "readout_ms", "MS",
+           "Rolling shutter: time from the first row to the last [the rig's]");
   addField(command, arguments, "--noise", "noise", "on|off", "Errors of all sensors [on]");
   addField(command, arguments, "--load", "load", "on|off",
            "Static tilt by passengers and luggage [on]");

@@ -25,9 +25,11 @@ Check checkIntrinsics(const RigCamera& c) {
   constexpr double kMaxView = 2.97;   // rad, 170 degrees: of a camera that maps to a plane
   const Camera& camera = c.camera;
   const FieldOfView view = fieldOfView(camera);
-  const std::string sees =
-      fmt::format("sees {:.0f} x {:.0f} deg", view.horizontal * kDegreesPerRadian,
-                  view.vertical * kDegreesPerRadian);
+  std::string sees = fmt::format("sees {:.0f} x {:.0f} deg", view.horizontal * kDegreesPerRadian,
+                                 view.vertical * kDegreesPerRadian);
+  if (c.readout_time > 0.0) {
+    sees += fmt::format(", rolling shutter of {:.4g} ms", 1e3 * c.readout_time);
+  }
   Check check{CheckMark::kWarn, c.name + " intrinsics", ""};
   Eigen::Vector2d axis;
   if (!camera.project(Eigen::Vector3d::UnitZ(), axis)) {

@@ -71,30 +71,30 @@ FrameSet FrameRenderer::draw(int index, const Wanted& wanted) const {
   const std::uint64_t key = hash64(static_cast<std::uint64_t>(simulation_->spec().seed),
                                    static_cast<std::uint64_t>(index));
   const bool blurred = simulation_->spec().motion_blur > 1;
-  const SE3 T_world_vehicle = simulation_->T_world_vehicle(t);
-  const auto moment = renderer_->moment(t, T_world_vehicle);
+  const auto moment = renderer_->moment(t, simulation_->T_world_vehicle(t));
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     if (!wanted.empty() && !wanted[i]) continue;
     const int camera = static_cast<int>(i);
     set.image_t_ns[i] = set.t_ns;
-    if (blurred) {
-      const CameraMotion motion{[this](double at) { return simulation_->T_world_vehicle(at); },
-                                cameras[i].T_vehicle_cam};
-      set.images[i] = renderer_->render(camera, motion, t, key);
-    } else {
-      set.images[i] =
-          renderer_->render(camera, T_world_vehicle * cameras[i].T_vehicle_cam, *moment, key);
-    }
+    const CameraMotion motion = motionOf(camera);
+    set.images[i] =
+        blurred ? renderer_->render(camera, motion, t, key)
+                : renderer_->render(camera, renderer_->placesOf(camera, motion, t), *moment, key);
   }
   return set;
 }
 
+CameraMotion FrameRenderer::motionOf(int camera) const {
+  const RigCamera& told = simulation_->trueRig().cameras.at(static_cast<std::size_t>(camera));
+  return {[this](double at) { return simulation_->T_world_vehicle(at); }, told.T_vehicle_cam,
+          told.readout_time};
+}
+
 cv::Mat FrameRenderer::labels(int index, int camera) const {
   const double t = secondsOf(index);
-  const SE3 T_world_vehicle = simulation_->T_world_vehicle(t);
-  const SE3& T_vehicle_cam = simulation_->trueRig().cameras.at(camera).T_vehicle_cam;
   return renderer_
-      ->renderTruth(camera, T_world_vehicle * T_vehicle_cam, *renderer_->moment(t, T_world_vehicle))
+      ->renderTruth(camera, renderer_->placesOf(camera, motionOf(camera), t),
+                    *renderer_->moment(t, simulation_->T_world_vehicle(t)))
       .labels;
 }
 

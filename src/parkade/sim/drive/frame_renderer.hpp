@@ -45,6 +45,7 @@ class FrameRenderer {
  private:
   FrameRenderer() = default;
   [[nodiscard]] double secondsOf(int index) const;
+  [[nodiscard]] CameraMotion motionOf(int camera) const;
 
   std::shared_ptr<const Simulation> simulation_;
   std::shared_ptr<const Scene> scene_;

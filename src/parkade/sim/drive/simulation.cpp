@@ -86,6 +86,11 @@ Result<std::shared_ptr<const Simulation>> Simulation::make(const SimSpec& spec) 
   Result<Rig> rig = loadRig(spec.rig);
   if (!rig) return rig.error();
   simulation->true_rig_ = std::move(rig).value();
+  if (spec.readout_ms > 0.0) {
+    for (RigCamera& camera : simulation->true_rig_.cameras) {
+      camera.readout_time = 1e-3 * spec.readout_ms;
+    }
+  }
   simulation->told_rig_ = disturbed(simulation->true_rig_, spec);
 
   GarageOptions garage_options;

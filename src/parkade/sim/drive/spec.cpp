@@ -37,6 +37,8 @@ void SimSpec::visit(OptionVisitor& v) {
   v.field("rig", rig, "Sensors of the car: a preset (avp6, nuscenes6, avm4) or a rig.yaml file.");
   v.field("fast", fast, "One sample per pixel, 2 x 2 only where a surface ends.");
   v.field("motion_blur", motion_blur, "count", "Sub-frames within an exposure; 1: none.", 1, 64);
+  v.field("readout_ms", readout_ms, "ms",
+          "Rolling shutter: time from the first row to the last; 0: the rig's own.", 0.0, 200.0);
   v.field("noise", noise, "Noise and errors of cameras, inertial unit and wheels.");
   v.field("load", load, "Static pitch and roll of passengers and luggage, drawn from the seed.");
   v.field("rolling_start", rolling_start, "Begin while the car is moving, instead of at rest.");

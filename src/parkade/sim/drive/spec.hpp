@@ -28,6 +28,7 @@ struct SimSpec {
   std::string rig = "avp6";
   bool fast = false;
   int motion_blur = 1;
+  double readout_ms = 0.0;
   bool noise = true;
   bool load = true;
   bool rolling_start = false;

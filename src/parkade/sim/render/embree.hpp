@@ -23,7 +23,9 @@ enum RayMask : unsigned {
   kMaskFloor = 2U,     ///< materials with is_floor
   kMaskOverhead = 4U,  ///< ceiling, beams, hanging signs
   kMaskLamp = 8U,      ///< emitting materials of the ceiling
-  kMaskAll = 15U,
+  kMaskMoving = 16U,   ///< instances of what moves, but for the own car
+  kMaskOwnCar = 32U,   ///< that of the own car
+  kMaskAll = 63U,
 };
 
 /// A device that builds on one thread, so that the order of triangles in its trees, and with it the

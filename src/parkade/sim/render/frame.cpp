@@ -52,10 +52,10 @@ struct TileWork {
 
 class FrameTracer {
  public:
-  FrameTracer(const FrameSetup& setup, const RayTable& table, const SE3& T_world_cam)
+  FrameTracer(const FrameSetup& setup, const RayTable& table, const CameraPlaces& places)
       : setup_(setup),
         table_(table),
-        rays_(setup, table, T_world_cam),
+        rays_(setup, table, places),
         samples_(table.grid() * table.grid()) {}
 
   void traceTile(int tile, PixelBlocks blocks, TileSamples& out) const {
@@ -65,7 +65,6 @@ class FrameTracer {
                  ReflectionBuffer* mirror) const;
 
  private:
-  [[nodiscard]] const Eigen::Vector3f& eye() const { return rays_.eye(); }
   /// Samples on the same surface are shaded as one.
   void addGroups(const SurfaceHit* hits, const Eigen::Vector3f* directions, TileWork::Pixel& pixel,
                  TileWork& work) const;
@@ -86,6 +85,7 @@ void FrameTracer::addGroups(const SurfaceHit* hits, const Eigen::Vector3f* direc
                             TileWork::Pixel& pixel, TileWork& work) const {
   const Shader& shader = *setup_.shader;
   const Moment& moment = *setup_.moment;
+  const Eigen::Vector3f& eye = rays_.eye(pixel.y);
   const float spread = table_.spread(pixel.x, pixel.y);
   unsigned done = 0;
   for (int i = 0; i < samples_; ++i) {
@@ -94,7 +94,7 @@ void FrameTracer::addGroups(const SurfaceHit* hits, const Eigen::Vector3f* direc
     }
     if (hits[i].triangle == kNoTriangle) {
       if (!setup_.open_above) {
-        pixel.sum += shader.missed(eye(), directions[i]);
+        pixel.sum += shader.missed(eye, directions[i]);
       }
       continue;
     }
@@ -102,7 +102,7 @@ void FrameTracer::addGroups(const SurfaceHit* hits, const Eigen::Vector3f* direc
     group.count = 1;
     group.hits = hits;
     group.directions = directions;
-    group.eye = &eye();
+    group.eye = &eye;
     group.spread = spread;
     group.members[0] = static_cast<std::uint8_t>(i);
     for (int j = i + 1; j < samples_; ++j) {
@@ -211,7 +211,7 @@ void FrameTracer::traceMirrors(int tile, const std::vector<MirrorRay>& floor,
 
 }  // namespace
 
-void traceFrame(const FrameSetup& setup, const RayTable& table, const SE3& T_world_cam,
+void traceFrame(const FrameSetup& setup, const RayTable& table, const CameraPlaces& places,
                 Radiance& out, const RayTable* edges) {
   out.width = table.width();
   out.height = table.height();
@@ -222,9 +222,9 @@ void traceFrame(const FrameSetup& setup, const RayTable& table, const SE3& T_wor
     mirror.reset(out.width, out.height);
   }
   ReflectionBuffer* const reflections = setup.reflections ? &mirror : nullptr;
-  const FrameTracer tracer(setup, table, T_world_cam);
+  const FrameTracer tracer(setup, table, places);
   std::optional<FrameTracer> finer;
-  if (edges != nullptr) finer.emplace(setup, *edges, T_world_cam);
+  if (edges != nullptr) finer.emplace(setup, *edges, places);
   parallelFor(setup.threads, static_cast<std::size_t>(table.tilesY()), [&](std::size_t row) {
     const FlushDenormals flush;
     thread_local TileSamples samples;

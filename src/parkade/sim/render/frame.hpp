@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "parkade/geometry/se3.hpp"
+#include "parkade/sim/render/camera_places.hpp"
 #include "parkade/sim/render/moment.hpp"
 #include "parkade/sim/render/ray_table.hpp"
 #include "parkade/sim/render/shading.hpp"
@@ -43,10 +43,11 @@ struct FrameSetup {
 /// Traces and shades a frame. The same numbers for any number of threads.
 /// edges: of the same camera with 2 x 2 samples per pixel, where the table has one; with it such
 /// blocks of 2 x 2 pixels are drawn in which one surface ends before another (frame_edges.hpp).
-void traceFrame(const FrameSetup& setup, const RayTable& table, const SE3& T_world_cam,
+void traceFrame(const FrameSetup& setup, const RayTable& table, const CameraPlaces& places,
                 Radiance& out, const RayTable* edges = nullptr);
 
 /// Labels, instances and depths; the table must have one sample per pixel.
-void traceTruth(const FrameSetup& setup, const RayTable& table, const SE3& T_world_cam, Truth& out);
+void traceTruth(const FrameSetup& setup, const RayTable& table, const CameraPlaces& places,
+                Truth& out);
 
 }  // namespace parkade::sim

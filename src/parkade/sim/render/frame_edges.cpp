@@ -7,7 +7,7 @@
 namespace parkade::sim {
 namespace {
 
-constexpr int kTile = RayTable::kTile;
+constexpr int kTileSide = RayTable::kTile;
 
 class EdgeFinder {
  public:
@@ -39,11 +39,12 @@ class EdgeFinder {
 PixelBlocks findEdges(const TileSamples& samples, const Shader& shader, const Moment& moment) {
   const EdgeFinder finder(samples, shader, moment);
   PixelBlocks blocks = 0;
-  for (int y = 0; y < kTile; ++y) {
-    for (int x = 0; x < kTile; ++x) {
-      const int i = y * kTile + x;
-      if (x + 1 < kTile && finder.isEdge(i, i + 1)) blocks |= blockOf(x, y) | blockOf(x + 1, y);
-      if (y + 1 < kTile && finder.isEdge(i, i + kTile)) blocks |= blockOf(x, y) | blockOf(x, y + 1);
+  for (int y = 0; y < kTileSide; ++y) {
+    for (int x = 0; x < kTileSide; ++x) {
+      const int i = y * kTileSide + x;
+      if (x + 1 < kTileSide && finder.isEdge(i, i + 1)) blocks |= blockOf(x, y) | blockOf(x + 1, y);
+      if (y + 1 < kTileSide && finder.isEdge(i, i + kTileSide))
+        blocks |= blockOf(x, y) | blockOf(x, y + 1);
     }
   }
   return blocks;

@@ -254,6 +254,7 @@ std::shared_ptr<const Moment> MomentMaker::make(double t,
       Eigen::Map<Eigen::Matrix3f>{columns} = object.R_world_object;
       Eigen::Map<Eigen::Vector3f>{columns + 9} = object.p_world;
       rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+      rtcSetGeometryMask(instance, object.instance == kEgoInstance ? kMaskOwnCar : kMaskMoving);
       rtcCommitGeometry(instance);
       rtcAttachGeometry(moment->scene.get(), instance);
       rtcReleaseGeometry(instance);

@@ -15,7 +15,7 @@
 namespace parkade::sim {
 namespace {
 
-constexpr unsigned kWithoutCeiling = kMaskSolid | kMaskFloor;
+constexpr unsigned kWithoutCeiling = kMaskSolid | kMaskFloor | kMaskMoving | kMaskOwnCar;
 constexpr float kAbove = 20.0F;  // m over the vehicle's ground: above every garage level's ceiling
 constexpr float kProbeHeight =
     1.0F;  // m: where a place is tested for lying inside a pillar or wall

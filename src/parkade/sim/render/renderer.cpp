@@ -98,11 +98,14 @@ Radiance Renderer::renderRadiance(int camera, const SE3& T_world_cam, const Mome
   return radiance;
 }
 
-cv::Mat Renderer::render(int camera, const SE3& T_world_cam, const Moment& moment,
+CameraPlaces Renderer::placesOf(int camera, const CameraMotion& motion, double t) const {
+  return {motion, t, tables(camera).picture.height()};
+}
+
+cv::Mat Renderer::render(int camera, const CameraPlaces& places, const Moment& moment,
                          std::uint64_t frame) const {
   thread_local Radiance radiance;  // kept: fresh memory costs a page fault per 4 kB
-  traceFrame(setupFor(moment), tables(camera).picture, T_world_cam, radiance,
-             tables(camera).finer());
+  traceFrame(setupFor(moment), tables(camera).picture, places, radiance, tables(camera).finer());
   return sensor_.expose(radiance, sensor_.meter(radiance), tables(camera).lens_share,
                         hash64(static_cast<std::uint64_t>(camera), frame), options_.threads);
 }
@@ -110,11 +113,9 @@ cv::Mat Renderer::render(int camera, const SE3& T_world_cam, const Moment& momen
 cv::Mat Renderer::render(int camera, const CameraMotion& motion, double t,
                          std::uint64_t frame) const {
   const int count = options_.sensor.motion_blur;
-  const auto cameraAt = [&](double time) {
-    return motion.T_world_vehicle(time) * motion.T_vehicle_cam;
-  };
   if (count <= 1) {
-    return render(camera, cameraAt(t), *moment(t, motion.T_world_vehicle(t)), frame);
+    return render(camera, placesOf(camera, motion, t), *moment(t, motion.T_world_vehicle(t)),
+                  frame);
   }
   const CameraTables& c = tables(camera);
   Radiance sum;
@@ -125,8 +126,8 @@ cv::Mat Renderer::render(int camera, const CameraMotion& motion, double t,
     const double offset = k == 0 ? 0.0 : exposure.time_s * ((part + 0.5) / count - 0.5);
     const auto now = moment(t + offset, motion.T_world_vehicle(t + offset));
     Radiance sub;
-    traceFrame(setupFor(*now), c.sub_frames[static_cast<std::size_t>(k % 4)], cameraAt(t + offset),
-               sub);
+    traceFrame(setupFor(*now), c.sub_frames[static_cast<std::size_t>(k % 4)],
+               placesOf(camera, motion, t + offset), sub);
     if (k == 0) {
       exposure = sensor_.meter(sub);
       sum = std::move(sub);
@@ -143,9 +144,10 @@ cv::Mat Renderer::render(int camera, const CameraMotion& motion, double t,
                         hash64(static_cast<std::uint64_t>(camera), frame), options_.threads);
 }
 
-TruthImages Renderer::renderTruth(int camera, const SE3& T_world_cam, const Moment& moment) const {
+TruthImages Renderer::renderTruth(int camera, const CameraPlaces& places,
+                                  const Moment& moment) const {
   Truth truth;
-  traceTruth(setupFor(moment), tables(camera).centers(), T_world_cam, truth);
+  traceTruth(setupFor(moment), tables(camera).centers(), places, truth);
   TruthImages images;
   images.labels = cv::Mat(truth.height, truth.width, CV_8UC1, truth.labels.data()).clone();
   images.instances = cv::Mat(truth.height, truth.width, CV_32SC1, truth.instances.data()).clone();

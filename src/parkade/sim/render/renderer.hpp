@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <opencv2/core/mat.hpp>
 #include <optional>
@@ -12,6 +11,7 @@
 #include "parkade/camera/camera.hpp"
 #include "parkade/core/options.hpp"
 #include "parkade/geometry/se3.hpp"
+#include "parkade/sim/render/camera_places.hpp"
 #include "parkade/sim/render/frame.hpp"
 #include "parkade/sim/render/light_bake.hpp"
 #include "parkade/sim/render/sensor_model.hpp"
@@ -48,12 +48,6 @@ struct OrthoImages {
   cv::Mat labels;  ///< CV_8UC1, SemanticClass
 };
 
-/// A camera on a moving car, for motion blur.
-struct CameraMotion {
-  std::function<SE3(double t)> T_world_vehicle;
-  SE3 T_vehicle_cam;
-};
-
 /// Draws a scene: static geometry in one tree, light baked once, moving objects placed per moment.
 /// After the cameras are added all drawing functions may be called from several threads. The same
 /// call gives the same bytes for any number of threads.
@@ -75,11 +69,11 @@ class Renderer {
 
   /// The picture that the camera delivers, CV_8UC3 BGR. frame counts pictures; with the camera's
   /// index it picks the noise.
-  [[nodiscard]] cv::Mat render(int camera, const SE3& T_world_cam, const Moment& moment,
+  [[nodiscard]] cv::Mat render(int camera, const CameraPlaces& places, const Moment& moment,
                                std::uint64_t frame) const;
 
-  /// The same with the motion within the exposure, when sensor.motion_blur asks for sub-frames;
-  /// t is the middle of the exposure.
+  /// The same with the motion within the exposure, when sensor.motion_blur asks for sub-frames, and
+  /// from row to row of a rolling shutter; t is the middle of the middle row's exposure.
   [[nodiscard]] cv::Mat render(int camera, const CameraMotion& motion, double t,
                                std::uint64_t frame) const;
 
@@ -87,8 +81,10 @@ class Renderer {
   [[nodiscard]] Radiance renderRadiance(int camera, const SE3& T_world_cam,
                                         const Moment& moment) const;
 
-  [[nodiscard]] TruthImages renderTruth(int camera, const SE3& T_world_cam,
+  [[nodiscard]] TruthImages renderTruth(int camera, const CameraPlaces& places,
                                         const Moment& moment) const;
+  /// Where a camera of this renderer stands while its rows are read, the middle one at t.
+  [[nodiscard]] CameraPlaces placesOf(int camera, const CameraMotion& motion, double t) const;
 
   /// CV_8UC1, SemanticClass along any lines of sight from a camera's place: directions_cam is
   /// CV_32FC3, in the camera frame, of any length. kUnknown where the direction is zero, and on the

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <vector>
 
+#include "parkade/camera/rig.hpp"
 #include "parkade/core/check.hpp"
 #include "parkade/sim/render/ray_table.hpp"
 #include "parkade/sim/render/test_scene.hpp"
@@ -281,6 +282,46 @@ TEST(Renderer, MotionBlurSmearsAlongTheMotion) {
   };
   EXPECT_GT(steepest(0.0), 20);
   EXPECT_LT(steepest(3.0), 0.6 * steepest(0.0));  // 3 rad/s, 20 ms, 135 px/rad: 8 px
+}
+
+TEST(Renderer, RollingShutterReadsEachRowFromWhereTheCameraIsThen) {
+  Renderer renderer(busyHall(), RenderOptions{});
+  renderer.addCamera(smallCamera());
+  CameraMotion motion;
+  motion.T_world_vehicle = [](double t) {
+    return SE3(SO3::fromYawPitchRoll(0.5 * t, 0.0, 0.0), {-2.0 + 4.0 * t, 0.0, 0.0});
+  };
+  motion.T_vehicle_cam = SE3(test::lookAlongX(0.0).rotation(), {0.0, 0.0, 1.2});
+  motion.readout_time = 0.2;
+  const auto moment = renderer.moment(0.0, std::nullopt);
+  const TruthImages rolling = renderer.renderTruth(0, renderer.placesOf(0, motion, 0.0), *moment);
+  const int rows = rolling.depths.rows;
+  cv::Mat at_once;
+  for (const int row : {0, rows / 3, rows - 1}) {
+    const double t = rowTimeOf(motion.readout_time, row, rows);
+    const SE3 there = motion.T_world_vehicle(t) * motion.T_vehicle_cam;
+    at_once = renderer.renderTruth(0, there, *moment).depths;
+    EXPECT_EQ(cv::norm(rolling.depths.row(row), at_once.row(row), cv::NORM_INF), 0.0) << row;
+  }
+  EXPECT_GT(cv::norm(rolling.depths.row(0), at_once.row(0), cv::NORM_INF), 0.1);
+}
+
+TEST(Renderer, RollingShutterLeavesTheOwnCarInItsPlace) {
+  auto scene = busyHall();
+  Renderer renderer(scene, RenderOptions{});
+  renderer.addCamera(smallCamera());
+  CameraMotion motion;
+  motion.T_world_vehicle = [](double t) { return SE3(SO3(), {-2.0 + 4.0 * t, 0.0, 0.0}); };
+  motion.T_vehicle_cam = SE3(test::lookAlongX(0.5).rotation(), {-0.6, 0.0, 1.7});
+  const auto own = [&](double readout_time) {
+    motion.readout_time = readout_time;
+    const TruthImages truth = renderer.renderTruth(
+        0, renderer.placesOf(0, motion, 0.0), *renderer.moment(0.0, motion.T_world_vehicle(0.0)));
+    return cv::Mat(truth.instances == -1);
+  };
+  const cv::Mat at_once = own(0.0);
+  EXPECT_GT(cv::countNonZero(at_once), 100);
+  EXPECT_EQ(cv::norm(own(0.2), at_once, cv::NORM_INF), 0.0);
 }
 
 TEST(Renderer, RefusesASceneWithoutFloorOrLamp) {

@@ -6,6 +6,7 @@ set(RENDER_SOURCES
     render/bake_bounces.cpp
     render/bake_places.cpp
     render/bake_probes.cpp
+    render/camera_places.cpp
     render/direct_light.cpp
     render/embree.cpp
     render/floor_rays_kernel.cpp

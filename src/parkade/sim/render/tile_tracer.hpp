@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-#include "parkade/geometry/se3.hpp"
+#include "parkade/sim/render/camera_places.hpp"
 #include "parkade/sim/render/frame.hpp"
 
 namespace parkade::sim {
@@ -19,28 +19,32 @@ struct TileSamples {
   std::array<Eigen::Vector3f, kTilePixels * kMaxSamples> directions;
 };
 
-/// Sends the rays of a camera at its place, tile by tile.
+/// Sends the rays of a camera at its places, tile by tile. The own car, which goes along, is met as
+/// from the middle row's; what else moves stands as at that row's time.
 class TileTracer {
  public:
-  TileTracer(const FrameSetup& setup, const RayTable& table, const SE3& T_world_cam)
+  /// The places must outlive it.
+  TileTracer(const FrameSetup& setup, const RayTable& table, const CameraPlaces& places)
       : setup_(setup),
         table_(table),
-        R_(T_world_cam.rotation().matrix().cast<float>()),
-        eye_(T_world_cam.translation().cast<float>()),
-        floor_z_(setup.shader->floorHeight(eye_)) {}
+        places_(places),
+        floor_z_(setup.shader->floorHeight(places.eye())) {}
 
   void trace(int tile, TileSamples& out) const { trace(tile, ~std::uint64_t{0}, out); }
   /// Only the packets that are asked for, a bit each.
   void trace(int tile, std::uint64_t packets, TileSamples& out) const;
   /// What moves, if any of it may show in a tile, or in the floor's mirror image there.
   [[nodiscard]] RTCScene movingIn(int tile, bool mirrored) const;
-  [[nodiscard]] const Eigen::Vector3f& eye() const { return eye_; }
+  [[nodiscard]] const Eigen::Vector3f& eye(int row) const { return places_.eye(row); }
 
  private:
+  [[nodiscard]] bool showsMoving(const RayTable::Cone& cone, int row, bool mirrored) const;
+  /// Whether a ray meets the own car before what it met so far.
+  void meetOwnCar(const RayTable::Packet& packet, RTCScene moving, RayPacket& rays) const;
+
   const FrameSetup& setup_;
   const RayTable& table_;
-  const Eigen::Matrix3f R_;
-  const Eigen::Vector3f eye_;
+  const CameraPlaces& places_;
   const float floor_z_;  ///< below the eye
 };
 

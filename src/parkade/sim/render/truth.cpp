@@ -11,11 +11,12 @@ namespace {
 
 constexpr int kTile = RayTable::kTile;
 
-void labelTile(const FrameSetup& setup, const RayTable& table, const Eigen::Vector3f& eye, int tile,
+void labelTile(const FrameSetup& setup, const RayTable& table, const TileTracer& tracer, int tile,
                const TileSamples& in, Truth& out) {
   const int left = tile % table.tilesX() * kTile;
   const int top = tile / table.tilesX() * kTile;
   for (int y = 0; y < kTile && top + y < out.height; ++y) {
+    const Eigen::Vector3f& eye = tracer.eye(top + y);
     for (int x = 0; x < kTile && left + x < out.width; ++x) {
       const std::size_t i = static_cast<std::size_t>(y * kTile + x);
       const SurfaceHit& hit = in.hits[i];
@@ -34,7 +35,7 @@ void labelTile(const FrameSetup& setup, const RayTable& table, const Eigen::Vect
 
 }  // namespace
 
-void traceTruth(const FrameSetup& setup, const RayTable& table, const SE3& T_world_cam,
+void traceTruth(const FrameSetup& setup, const RayTable& table, const CameraPlaces& places,
                 Truth& out) {
   PARKADE_CHECK(table.grid() == 1, "{} samples a side", table.grid());
   out.width = table.width();
@@ -43,14 +44,14 @@ void traceTruth(const FrameSetup& setup, const RayTable& table, const SE3& T_wor
   out.labels.assign(size, SemanticClass::kUnknown);
   out.instances.assign(size, 0U);
   out.depths.assign(size, 0.0F);
-  const TileTracer tracer(setup, table, T_world_cam);
+  const TileTracer tracer(setup, table, places);
   parallelFor(setup.threads, static_cast<std::size_t>(table.tilesY()), [&](std::size_t row) {
     const FlushDenormals flush;
     thread_local TileSamples samples;
     for (int i = 0; i < table.tilesX(); ++i) {
       const int tile = static_cast<int>(row) * table.tilesX() + i;
       tracer.trace(tile, samples);
-      labelTile(setup, table, tracer.eye(), tile, samples, out);
+      labelTile(setup, table, tracer, tile, samples, out);
     }
   });
 }
