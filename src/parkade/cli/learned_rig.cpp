@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -50,6 +51,9 @@ Rig learnedRig(const Rig& told, const std::vector<CameraCalibrationEstimate>& le
     }
     // To the microsecond: an offset that is not refined is held to a few nanoseconds.
     camera.time_offset_ns += 1000 * std::llround(1e6 * learned[c].time_offset);
+    if (camera.readout_time > 0.0) {
+      camera.readout_time = std::max(1e-6, 1e-6 * std::round(1e6 * learned[c].readout_time));
+    }
     if (camera.mask_path.empty()) continue;
     std::error_code code;  // the file that names it will lie elsewhere
     const std::filesystem::path mask = std::filesystem::absolute(camera.mask_path, code);
@@ -70,6 +74,11 @@ nlohmann::json calibrationJson(const RigCamera& told, const CameraCalibrationEst
   json["position_sigma_m"] = vectorJson(learned.sigma.head<3>());
   json["rotation_sigma_rad"] = vectorJson(learned.sigma.segment<3>(3));
   json["time_offset_sigma_s"] = learned.sigma(6);
+  if (told.readout_time > 0.0) {
+    json["readout_time_s"] = learned.readout_time;
+    json["told_readout_time_s"] = told.readout_time;
+    json["readout_time_sigma_s"] = learned.sigma(7);
+  }
   return json;
 }
 

@@ -22,7 +22,7 @@ std::vector<CameraCalibrationEstimate> foundCameras(const Rig& told) {
   std::vector<CameraCalibrationEstimate> found(told.cameras.size());
   for (std::size_t c = 0; c < found.size(); ++c) {
     found[c].T_vehicle_cam = told.cameras[c].T_vehicle_cam;
-    found[c].sigma << 1e-3, 1e-3, 1e-3, 1e-4, 1e-4, 1e-4, 1e-3;
+    found[c].sigma << 1e-3, 1e-3, 1e-3, 1e-4, 1e-4, 1e-4, 1e-3, 0.0;
   }
   const SE3& before = told.cameras[0].T_vehicle_cam;
   found[0].T_vehicle_cam = SE3(SO3::exp({0.0, 0.0, 0.2 * kDegree}) * before.rotation(),

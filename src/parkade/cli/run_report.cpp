@@ -50,6 +50,10 @@ TextTable cameraTable(const Json& calibration) {
   table.title = "Where the cameras were found, and their clocks";
   table.header = {"camera", "moved mm: x", "y",     "z",        "sigma", "turned deg: x",
                   "y",      "z",           "sigma", "clock ms", "sigma"};
+  const bool rolling = std::any_of(calibration.begin(), calibration.end(), [](const Json& camera) {
+    return camera.contains("readout_time_s");
+  });
+  if (rolling) table.header.insert(table.header.end(), {"readout ms", "sigma"});
   for (const Json& camera : calibration) {
     std::vector<std::string> row = {camera.value("camera", "-")};
     const auto add = [&](const std::string& value, const std::string& sigma, double unit,
@@ -65,6 +69,10 @@ TextTable cameraTable(const Json& calibration) {
     add("/turned_rad", "/rotation_sigma_rad", kDegrees, 3);
     row.push_back(figureText(1e3 * reportNumber(camera, "/time_offset_s"), 2));
     row.push_back(figureText(1e3 * reportNumber(camera, "/time_offset_sigma_s"), 2));
+    if (rolling) {
+      row.push_back(figureText(1e3 * reportNumber(camera, "/readout_time_s"), 2));
+      row.push_back(figureText(1e3 * reportNumber(camera, "/readout_time_sigma_s"), 2));
+    }
     table.rows.push_back(std::move(row));
   }
   table.note =

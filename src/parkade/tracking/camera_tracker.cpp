@@ -22,6 +22,10 @@ CameraTracker::CameraTracker(const RigCamera& camera, const TrackingOptions& opt
       contrast_(options.contrast),
       static_mask_(validityMask(camera.camera)) {}
 
+void CameraTracker::setReadoutTime(double seconds) {
+  if (camera_.readout_time > 0.0 && seconds > 0.0) camera_.readout_time = seconds;
+}
+
 void CameraTracker::setMask(const cv::Mat& mask) {
   PARKADE_CHECK(mask.type() == CV_8UC1 && mask.size() == static_mask_.size(),
                 "mask of {} x {}, type {}", mask.cols, mask.rows, mask.type());
@@ -88,7 +92,7 @@ void CameraTracker::track(const cv::Mat& image, TimeNs t_ns, const MotionPrior& 
   if (!views_.empty()) {
     std::vector<Flow> flows(views_.size());
     for (std::size_t i = 0; i < views_.size(); ++i) flows[i].view = views_[i];
-    predict(prior, flows);
+    predict(prior, t_ns, flows);
     flowForward(flows);
     flowBackward(flows);
     retry(flows);

@@ -58,6 +58,8 @@ class CameraTracker {
   [[nodiscard]] SearchImage searchImage() const;
   [[nodiscard]] const RigCamera& camera() const { return camera_; }
 
+  /// A rolling shutter takes longer or less long than the rig said; of no use to others.
+  void setReadoutTime(double seconds);
   void setMask(const cv::Mat& mask);
   void setDynamicMask(const cv::Mat& mask);
 
@@ -68,7 +70,7 @@ class CameraTracker {
  private:
   struct Flow;
   void accumulate(const MotionPrior& prior);
-  void predict(const MotionPrior& prior, std::vector<Flow>& flows) const;
+  void predict(const MotionPrior& prior, TimeNs t_ns, std::vector<Flow>& flows) const;
   void flowForward(std::vector<Flow>& flows) const;
   void flowBackward(std::vector<Flow>& flows) const;
   void retry(std::vector<Flow>& flows) const;

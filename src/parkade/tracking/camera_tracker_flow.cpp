@@ -9,6 +9,7 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "parkade/core/median.hpp"
+#include "parkade/tracking/row_motion.hpp"
 
 namespace parkade {
 namespace {
@@ -65,7 +66,7 @@ double inverseDepthNear(const std::vector<KnownDepth>& known, const Eigen::Vecto
 
 }  // namespace
 
-void CameraTracker::predict(const MotionPrior& prior, std::vector<Flow>& flows) const {
+void CameraTracker::predict(const MotionPrior& prior, TimeNs t_ns, std::vector<Flow>& flows) const {
   for (Flow& flow : flows) flow.predicted = flow.view.pixel;
   if (!motion_valid_) {
     for (Flow& flow : flows) flow.follows_prediction = false;
@@ -75,6 +76,7 @@ void CameraTracker::predict(const MotionPrior& prior, std::vector<Flow>& flows) 
   const SE3 T_current_last =  // camera frames
       T_cam_vehicle * T_last_current_.inverse() * camera_.T_vehicle_cam;
   const SE3 T_cam_previous = T_cam_vehicle * prior.T_previous_current.inverse();
+  const RowMotion rows(prior, t_ns);
   std::vector<KnownDepth> known;
   std::vector<std::uint8_t> has_point(flows.size(), 0);
   for (std::size_t i = 0; i < flows.size() && prior.translation_valid && translation_valid_; ++i) {
@@ -83,6 +85,12 @@ void CameraTracker::predict(const MotionPrior& prior, std::vector<Flow>& flows) 
     const Eigen::Vector3d p_cam = T_cam_previous * point->second;
     Eigen::Vector2d pixel;
     if (!camera_.camera.project(p_cam, pixel)) continue;
+    if (camera_.readout_time > 0.0) {  // where it is when its row is read
+      const SE3 T_now_row = rows.vehicleAt(camera_.rowTime(pixel.y()));
+      const SE3 T_cam_previous_then =
+          T_cam_vehicle * (prior.T_previous_current * T_now_row).inverse();
+      if (!camera_.camera.project(T_cam_previous_then * point->second, pixel)) continue;
+    }
     flows[i].predicted = pixel;
     has_point[i] = 1;
     const double depth = (T_current_last.inverse() * p_cam).norm();

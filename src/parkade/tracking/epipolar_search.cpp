@@ -59,9 +59,20 @@ std::optional<PatchRays> raysAround(const Camera& camera, const Eigen::Vector2d&
   return rays;
 }
 
-Node projectNode(const Camera& b, const SE3& T_b_a, const PatchRays& rays, double inverse_depth) {
+Node projectNode(const Camera& b, const RowPair& pair, const PatchRays& rays,
+                 double inverse_depth) {
   Node node;
   node.inverse_depth = inverse_depth;
+  SE3 T_b_a = pair.atOnce();
+  if (pair.rolling()) {
+    // Which row it is read with follows from where it shows, and the other way round; once is
+    // enough for a car that moves by far less than the distance to the point.
+    Eigen::Vector2d about;
+    if (!b.project(T_b_a.rotation() * rays.centre + inverse_depth * T_b_a.translation(), about)) {
+      return node;
+    }
+    T_b_a = pair.at(about.y());
+  }
   const Eigen::Vector3d shift = inverse_depth * T_b_a.translation();
   Eigen::Vector2d right;
   Eigen::Vector2d below;
@@ -95,13 +106,13 @@ double correlate(const SearchImage& b, const Pattern& wanted, const Eigen::Vecto
   return wanted.dot(seen);
 }
 
-std::vector<Place> walkCurve(const SearchImage& b, const SE3& T_b_a, const PatchRays& rays,
+std::vector<Place> walkCurve(const SearchImage& b, const RowPair& pair, const PatchRays& rays,
                              const Pattern& wanted, double from, double to) {
   std::vector<Place> places;
   Node last;
   for (int i = 0; i < kNodes; ++i) {
     const double share = static_cast<double>(i) / (kNodes - 1);
-    const Node node = projectNode(*b.camera, T_b_a, rays, from + share * (to - from));
+    const Node node = projectNode(*b.camera, pair, rays, from + share * (to - from));
     if (node.valid) {
       int steps = 1;
       if (last.valid) {
@@ -169,7 +180,7 @@ EpipolarCheck checkEpipolar(const Eigen::Vector3d& ray_a, const Eigen::Vector3d&
 }
 
 std::optional<CrossMatch> searchEpipolar(const SearchImage& a, const SearchImage& b,
-                                         const SE3& T_b_a, const Eigen::Vector2d& pixel_a,
+                                         const RowPair& pair, const Eigen::Vector2d& pixel_a,
                                          const Eigen::Matrix2d& warp_a, const Patch& patch,
                                          double known_depth, const MatchingOptions& options) {
   const std::optional<PatchRays> rays = raysAround(*a.camera, pixel_a);
@@ -186,7 +197,7 @@ std::optional<CrossMatch> searchEpipolar(const SearchImage& a, const SearchImage
     to = (1.0 - kKnownRange) / known_depth;
   }
   const std::optional<Place> place =
-      pickUnique(walkCurve(b, T_b_a, *rays, wanted, from, to), options);
+      pickUnique(walkCurve(b, pair, *rays, wanted, from, to), options);
   if (!place) return std::nullopt;
   CrossMatch match;
   // The shape is known from geometry but for the slant of the surface: leave it some freedom.
@@ -200,6 +211,7 @@ std::optional<CrossMatch> searchEpipolar(const SearchImage& a, const SearchImage
   Eigen::Vector3d ray_b;
   if (!b.camera->unproject(found.pixel, ray_b)) return std::nullopt;
   const double focal = b.camera->focalLength();
+  const SE3 T_b_a = pair.at(found.pixel.y());
   const EpipolarCheck check = checkEpipolar(rays->centre, ray_b, T_b_a, focal);
   match.epipolar_px = check.distance_px;
   match.inverse_depth = std::max(0.0, check.inverse_depth_a);

@@ -10,6 +10,7 @@
 #include "parkade/camera/rig.hpp"
 #include "parkade/tracking/options.hpp"
 #include "parkade/tracking/patch.hpp"
+#include "parkade/tracking/row_motion.hpp"
 
 namespace parkade {
 
@@ -35,7 +36,7 @@ struct SearchImage {
 ///
 /// known_depth: m along the ray from a, where the estimator knows it; 0 else.
 std::optional<CrossMatch> searchEpipolar(const SearchImage& a, const SearchImage& b,
-                                         const SE3& T_b_a, const Eigen::Vector2d& pixel_a,
+                                         const RowPair& pair, const Eigen::Vector2d& pixel_a,
                                          const Eigen::Matrix2d& warp_a, const Patch& patch,
                                          double known_depth, const MatchingOptions& options);
 

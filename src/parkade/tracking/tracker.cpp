@@ -12,6 +12,7 @@
 #include "parkade/tracking/camera_tracker.hpp"
 #include "parkade/tracking/epipolar_search.hpp"
 #include "parkade/tracking/overlap.hpp"
+#include "parkade/tracking/row_motion.hpp"
 
 namespace parkade {
 
@@ -57,8 +58,13 @@ class Tracker::Impl {
   };
 
   void forEach(int count, const std::function<void(int)>& body) const;
-  void checkShared();
-  void match(bool only_new, const MotionPrior& prior);
+  void checkShared(const RowMotion& motion);
+  void match(bool only_new, const MotionPrior& prior, const RowMotion& motion);
+  [[nodiscard]] RowPair rowsOf(const Pair& pair, const Eigen::Vector2d& pixel_from,
+                               const RowMotion& motion) const {
+    return {camera(pair.from).camera(), camera(pair.to).camera(), pair.T_to_from, pixel_from.y(),
+            motion};
+  }
   [[nodiscard]] std::vector<Search> planSearches(bool only_new, const MotionPrior& prior) const;
   void commit(const std::vector<Search>& searches);
   void detect();
@@ -103,16 +109,20 @@ TrackSet Tracker::Impl::track(const FrameSet& frames, const MotionPrior& prior) 
   report = {};
   first_new_id_ = next_id_;
   const int count = static_cast<int>(cameras.size());
+  for (std::size_t c = 0; c < std::min(cameras.size(), prior.readout_times.size()); ++c) {
+    cameras[c].setReadoutTime(prior.readout_times[c]);
+  }
   // 1. Every camera for itself.
   forEach(count, [&](int c) {
     camera(c).track(pictures[static_cast<std::size_t>(c)], frames.t_ns, prior,
                     hash64(frame_, static_cast<std::uint64_t>(c)));
   });
   // 2. Between cameras: old features first, so that they fill cells that need no new corner then.
-  checkShared();
-  match(false, prior);
+  const RowMotion motion(prior, frames.t_ns);
+  checkShared(motion);
+  match(false, prior, motion);
   detect();
-  match(true, prior);
+  match(true, prior, motion);
   // 3. What goes to the estimator.
   TrackSet tracks;
   tracks.t_ns = frames.t_ns;
@@ -131,7 +141,7 @@ TrackSet Tracker::Impl::track(const FrameSet& frames, const MotionPrior& prior) 
   return tracks;
 }
 
-void Tracker::Impl::checkShared() {
+void Tracker::Impl::checkShared(const RowMotion& motion) {
   for (const Pair& pair : pairs_) {
     if (!camera(pair.from).ok() || !camera(pair.to).ok()) continue;
     // Most pairs stand both ways round: once is enough.
@@ -144,7 +154,8 @@ void Tracker::Impl::checkShared() {
     for (const FeatureView& view : camera(pair.to).views()) {
       const FeatureView* other = camera(pair.from).find(view.id);
       if (other == nullptr) continue;
-      const EpipolarCheck check = checkEpipolar(other->ray, view.ray, pair.T_to_from, focal);
+      const SE3 T_to_from = rowsOf(pair, other->pixel, motion).at(view.pixel.y());
+      const EpipolarCheck check = checkEpipolar(other->ray, view.ray, T_to_from, focal);
       if (check.distance_px > 1.5 * options_.matching.max_epipolar_px) {
         wrong.emplace_back(view.id, view.pixel);
       }
@@ -183,7 +194,7 @@ std::vector<Tracker::Impl::Search> Tracker::Impl::planSearches(bool only_new,
   return searches;
 }
 
-void Tracker::Impl::match(bool only_new, const MotionPrior& prior) {
+void Tracker::Impl::match(bool only_new, const MotionPrior& prior, const RowMotion& motion) {
   if (pairs_.empty()) return;
   std::vector<Search> searches = planSearches(only_new, prior);
   std::vector<std::optional<SearchImage>> images(cameras.size());
@@ -204,10 +215,10 @@ void Tracker::Impl::match(bool only_new, const MotionPrior& prior) {
                                    prior.T_previous_current.inverse();
         depth = (T_cam_previous * point->second).norm();
       }
-      search.match =
-          searchEpipolar(*images[static_cast<std::size_t>(search.pair->from)],
-                         *images[static_cast<std::size_t>(search.pair->to)], search.pair->T_to_from,
-                         view.pixel, view.warp, *view.patch, depth, options_.matching);
+      search.match = searchEpipolar(*images[static_cast<std::size_t>(search.pair->from)],
+                                    *images[static_cast<std::size_t>(search.pair->to)],
+                                    rowsOf(*search.pair, view.pixel, motion), view.pixel, view.warp,
+                                    *view.patch, depth, options_.matching);
     }
   });
   commit(searches);

@@ -18,8 +18,8 @@ constexpr double kLeastTime = 2e-5;      // s; of cameras that one clock trigger
 constexpr Eigen::Index kTime = 6;  // of a camera's degrees of freedom
 
 // Of neighbouring degrees of freedom of all cameras, from the mean square of each.
-void learn(Window& window, const Vector7d& mean_square, Eigen::Index first, Eigen::Index count,
-           double least) {
+void learn(Window& window, const CalibrationVector& mean_square, Eigen::Index first,
+           Eigen::Index count, double least) {
   if (window.refinements.front().sigma(first) < least) return;
   const double sigma = std::max(least, std::sqrt(mean_square.segment(first, count).mean()));
   for (CameraRefinement& refinement : window.refinements) {
@@ -33,17 +33,18 @@ void learnCalibrationSpread(Window& window, const Eigen::MatrixXd& global_covari
   if (window.refinements.empty()) return;
   PARKADE_CHECK(global_covariance.rows() == window.globalSize(), "covariance of {} of {} globals",
                 global_covariance.rows(), window.globalSize());
-  Vector7d sum = Vector7d::Zero();
+  CalibrationVector sum = CalibrationVector::Zero();
   double of_times = 0.0;  // what pictures leave open of the clocks
   for (std::size_t c = 0; c < window.refinements.size(); ++c) {
     const CameraRefinement& refinement = window.refinements[c];
-    const Vector7d whitened = calibrationResidual(window.cameras[c], refinement, nullptr);
-    const Vector7d variance = global_covariance.diagonal().segment<7>(Window::cameraGlobal(c));
+    const CalibrationVector whitened = calibrationResidual(window.cameras[c], refinement, nullptr);
+    const CalibrationVector variance =
+        global_covariance.diagonal().segment<kCalibration>(Window::cameraGlobal(c));
     sum += whitened.cwiseProduct(refinement.sigma).cwiseAbs2() + variance;
     of_times += variance(kTime);
   }
   const auto count = static_cast<double>(window.refinements.size());
-  const Vector7d mean_square = sum / count;
+  const CalibrationVector mean_square = sum / count;
   // One clock often triggers all cameras: while pictures tell next to nothing of it beside what the
   // calibration does, steps of (10) would make it exact.
   constexpr double kSeenShare = 0.1;  // of the calibration's variance

@@ -49,17 +49,22 @@ VioEstimator::Impl::Impl(const Rig& rig, const VioOptions& options)
   window_.T_imu_vehicle = T_imu_vehicle;
   window_.gravity.vector = Eigen::Vector3d(0.0, 0.0, -options.gravity);
   for (const RigCamera& camera : rig.cameras) {
-    window_.cameras.push_back({camera.camera, T_imu_vehicle * camera.T_vehicle_cam});
+    window_.cameras.push_back(
+        {camera.camera, T_imu_vehicle * camera.T_vehicle_cam, 0.0, camera.readout_time});
   }
   const VioCalibrationOptions& calibration = options.calibration;
   // A single camera that sits elsewhere looks much like an inertial unit that does.
   const bool refine_extrinsics = calibration.refine_extrinsics && window_.cameras.size() > 1;
-  if (refine_extrinsics || calibration.refine_time_offset) {
+  const bool rolling = std::any_of(rig.cameras.begin(), rig.cameras.end(),
+                                   [](const RigCamera& c) { return c.readout_time > 0.0; });
+  if (refine_extrinsics || calibration.refine_time_offset ||
+      (calibration.refine_readout_time && rolling)) {
     // What is not refined is held by a prior that nothing outweighs.
     const double rotation = calibration.rotation_sigma_deg * std::numbers::pi / 180.0;
     for (const RigCamera& camera : rig.cameras) {
       CameraRefinement refinement;
       refinement.prior_T_imu_cam = T_imu_vehicle * camera.T_vehicle_cam;
+      refinement.prior_readout_time = camera.readout_time;
       refinement.sigma.setConstant(kHeldCalibration);
       if (refine_extrinsics) {
         // Those that the rig tells are held: a rig that a drive has found errs in what no picture
@@ -71,6 +76,9 @@ VioEstimator::Impl::Impl(const Rig& rig, const VioOptions& options)
         learns_sigmas_ = learns_sigmas_ && !told;
       }
       if (calibration.refine_time_offset) refinement.sigma(6) = calibration.time_sigma;
+      if (calibration.refine_readout_time && camera.readout_time > 0.0) {
+        refinement.sigma(7) = calibration.readout_sigma;
+      }
       window_.refinements.push_back(refinement);
     }
   }

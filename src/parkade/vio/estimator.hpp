@@ -34,13 +34,14 @@ struct VioStatistics {
   double imu_noise_factor = 1.0;  ///< how many times larger the unit's errors are than told
 };
 
-/// Where a camera sits on the car and how its clock is off, as refined online.
+/// Where a camera sits on the car, how its clock is off and how long it reads, as refined online.
 struct CameraCalibrationEstimate {
   SE3 T_vehicle_cam;
-  double time_offset = 0.0;  ///< s; added to a stamp gives the time on the IMU's clock
-  /// Standard deviations: position (m, imu axes), rotation (rad, camera axes), time offset (s); 0
-  /// of what is not refined.
-  Eigen::Matrix<double, 7, 1> sigma = Eigen::Matrix<double, 7, 1>::Zero();
+  double time_offset = 0.0;   ///< s; added to a stamp gives the time on the IMU's clock
+  double readout_time = 0.0;  ///< s from the first row to the last (RigCamera)
+  /// Standard deviations: position (m, imu axes), rotation (rad, camera axes), time offset (s),
+  /// readout time (s); 0 of what is not refined.
+  Eigen::Matrix<double, 8, 1> sigma = Eigen::Matrix<double, 8, 1>::Zero();
 };
 
 /// Visual-inertial odometry over any number of cameras: a sliding window of keyframes and recent

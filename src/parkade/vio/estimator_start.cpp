@@ -289,6 +289,7 @@ void VioEstimator::Impl::forgetCalibration() {
     CameraRefinement& refinement = window_.refinements[c];
     window_.cameras[c].T_imu_cam = refinement.prior_T_imu_cam;
     window_.cameras[c].time_offset = refinement.prior_time_offset;
+    window_.cameras[c].readout_time = refinement.prior_readout_time;
     refinement.linearised = false;
     refinement.delta.setZero();
   }
@@ -343,6 +344,7 @@ void VioEstimator::Impl::restart(const std::string& reason) {
   for (std::size_t c = 0; c < window_.refinements.size(); ++c) {
     window_.refinements[c].prior_T_imu_cam = window_.cameras[c].T_imu_cam;
     window_.refinements[c].prior_time_offset = window_.cameras[c].time_offset;
+    window_.refinements[c].prior_readout_time = window_.cameras[c].readout_time;
   }
   window_.frames.clear();
   window_.features.clear();

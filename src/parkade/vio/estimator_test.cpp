@@ -125,6 +125,40 @@ TEST(VioEstimator, RefinesTheCalibrationWhileDriving) {
              on.rmse, before, after);
 }
 
+TEST(VioEstimator, FollowsARollingShutterAndFindsHowLongItReads) {
+  TrackSimulatorOptions options;
+  options.length = 60.0;
+  options.stops = {20.0, 40.0};
+  constexpr double kReadout = 0.03;
+  Rig rig = testing::surroundRig();
+  for (RigCamera& camera : rig.cameras) camera.readout_time = kReadout;
+  const SimulatedDrive drive = simulateDrive(rig, options);
+  const auto drivenWith = [&](double readout_time, bool finds) {
+    Rig told = rig;
+    for (RigCamera& camera : told.cameras) camera.readout_time = readout_time;
+    VioOptions vio;
+    vio.imu_noise_factor = 1.0;  // the simulated noise is the told one
+    VioEstimator estimator(told, vio);
+    const DriveScore result = score(drive, runDrive(drive, estimator));
+    for (const CameraCalibrationEstimate& camera : estimator.calibration()) {
+      if (!finds) continue;
+      EXPECT_NEAR(camera.readout_time, kReadout, 4.0 * camera.sigma(7));
+      EXPECT_LT(camera.sigma(7), 0.3 * VioCalibrationOptions{}.readout_sigma);
+    }
+    return result;
+  };
+  const DriveScore known = drivenWith(kReadout, true);
+  const DriveScore guessed = drivenWith(0.022, true);
+  const DriveScore untold = drivenWith(0.0, false);
+  fmt::print("rolling shutter told {:.4f} m, guessed {:.4f} m, not told {:.4f} m\n", known.rmse,
+             guessed.rmse, untold.rmse);
+  for (const DriveScore& result : {known, guessed}) {
+    EXPECT_LT(result.end_error, 0.0015 * drive.distance);
+    EXPECT_LT(result.mean_nees_position, 9.348);  // chi-square of 3 at 0.975
+  }
+  EXPECT_LT(known.rmse, 0.8 * untold.rmse);
+}
+
 // As a drive's rig does: where its pictures find nothing wrong it is not exact in what they do not
 // show.
 TEST(VioEstimator, SigmasThatTheRigTellsAreNotLearned) {

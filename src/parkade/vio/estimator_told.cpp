@@ -54,6 +54,9 @@ MotionPredictor VioEstimator::Impl::predictor() const {
     if (feature.inverse_distance < 1e-3) continue;
     predictor.points_odom_.emplace_back(id, window_.pointOf(feature));
   }
+  for (const VioCamera& camera : window_.cameras) {
+    predictor.readout_times_.push_back(camera.readout_time);
+  }
   return predictor;
 }
 
@@ -82,10 +85,11 @@ std::vector<CameraCalibrationEstimate> VioEstimator::Impl::calibration() const {
     CameraCalibrationEstimate estimate;
     estimate.T_vehicle_cam = T_vehicle_imu_ * window_.cameras[c].T_imu_cam;
     estimate.time_offset = window_.cameras[c].time_offset;
+    estimate.readout_time = window_.cameras[c].readout_time;
     estimate.sigma = window_.refinements[c].sigma;
     if (initialised_ && global_covariance_.rows() == window_.globalSize()) {
       estimate.sigma =
-          global_covariance_.diagonal().segment<7>(Window::cameraGlobal(c)).cwiseSqrt();
+          global_covariance_.diagonal().segment<kCalibration>(Window::cameraGlobal(c)).cwiseSqrt();
     }
     for (Eigen::Index i = 0; i < estimate.sigma.size(); ++i) {
       if (window_.refinements[c].sigma(i) <= kHeldCalibration) estimate.sigma(i) = 0.0;

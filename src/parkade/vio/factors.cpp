@@ -112,14 +112,15 @@ Vector15d startResidual(const WindowFrame& frame, const StartPrior& prior,
   return r;
 }
 
-Vector7d calibrationResidual(const VioCamera& camera, const CameraRefinement& refinement,
-                             Eigen::Matrix<double, 7, 7>* d_res_d_camera) {
+CalibrationVector calibrationResidual(const VioCamera& camera, const CameraRefinement& refinement,
+                                      CalibrationMatrix* d_res_d_camera) {
   const Vector3d turned =
       (refinement.prior_T_imu_cam.rotation().inverse() * camera.T_imu_cam.rotation()).log();
-  Vector7d r;
+  CalibrationVector r;
   r << camera.T_imu_cam.translation() - refinement.prior_T_imu_cam.translation(), turned,
-      camera.time_offset - refinement.prior_time_offset;
-  const Vector7d weight = refinement.sigma.cwiseInverse();
+      camera.time_offset - refinement.prior_time_offset,
+      camera.readout_time - refinement.prior_readout_time;
+  const CalibrationVector weight = refinement.sigma.cwiseInverse();
   if (d_res_d_camera != nullptr) {
     d_res_d_camera->setIdentity();
     d_res_d_camera->block<3, 3>(3, 3) = SO3::rightJacobianInverse(turned);

@@ -42,8 +42,8 @@ Vector15d startResidual(const WindowFrame& frame, const StartPrior& prior,
                         Matrix15d* d_res_d_frame = nullptr);
 
 /// What the calibration file says of a camera that is refined online (eq. 9).
-Vector7d calibrationResidual(const VioCamera& camera, const CameraRefinement& refinement,
-                             Eigen::Matrix<double, 7, 7>* d_res_d_camera = nullptr);
+CalibrationVector calibrationResidual(const VioCamera& camera, const CameraRefinement& refinement,
+                                      CalibrationMatrix* d_res_d_camera = nullptr);
 
 /// What the start knows of the vertical (eq. 8); zero where it knows nothing.
 Eigen::Vector2d gravityResidual(const WindowGravity& gravity, const StartPrior& prior,

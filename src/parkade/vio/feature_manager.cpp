@@ -63,9 +63,10 @@ std::vector<Innovation> innovationsOf(const Window& window,
       Eigen::Vector2d pixel;
       ReprojectionJacobians j;
       Innovation innovation{id, o.camera, 1e6, 1e3};
-      if (reproject(window.cameras[static_cast<std::size_t>(feature.anchor_camera)],
-                    window.cameras[static_cast<std::size_t>(o.camera)], anchor, target, anchor,
-                    target, feature.direction, feature.inverse_distance, pixel, &j)) {
+      const VioCamera& camera = window.cameras[static_cast<std::size_t>(o.camera)];
+      if (reproject(window.cameras[static_cast<std::size_t>(feature.anchor_camera)], camera,
+                    cameraPlace(camera, newest, o), anchor, target, anchor, target,
+                    feature.direction, feature.inverse_distance, pixel, &j)) {
         const Eigen::Vector2d error = pixel - observedPixel(window, o);
         const double noise = o.sigma_px * o.sigma_px + kLandmarkSigmaPx * kLandmarkSigmaPx;
         const Eigen::Matrix2d S = j.d_px_d_target * spread * j.d_px_d_target.transpose() +
@@ -165,6 +166,7 @@ Observations FeatureManager::observationsOf(const std::vector<VioCamera>& camera
     o.camera = track.camera;
     o.pixel = track.pixel;
     o.sigma_px = std::max(track.sigma_px, 0.01);
+    o.row_share = rowTimeOf(1.0, track.pixel.y(), cameras[camera].camera.height());
     if (!track.pixel.allFinite() || !cameras[camera].camera.unproject(track.pixel, o.ray)) continue;
     result.emplace_back(track.id, o);
   }

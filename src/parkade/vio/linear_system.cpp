@@ -154,12 +154,13 @@ void LinearSystem::addStart(const Window& window, const WindowFrame& frame, int 
 
 void LinearSystem::addCalibration(const Window& window) {
   for (std::size_t c = 0; c < window.refinements.size(); ++c) {
-    Eigen::Matrix<double, 7, 7> by_camera;
-    const Vector7d off = calibrationResidual(window.cameras[c], window.refinements[c], &by_camera);
+    CalibrationMatrix by_camera;
+    const CalibrationVector off =
+        calibrationResidual(window.cameras[c], window.refinements[c], &by_camera);
     const Eigen::Index row = cameraRow(static_cast<int>(c));
     cost_ += 0.5 * off.squaredNorm();
-    b_.segment<7>(row) += by_camera.transpose() * off;
-    H_.block<7, 7>(row, row) += by_camera.transpose() * by_camera;
+    b_.segment<kCalibration>(row) += by_camera.transpose() * off;
+    H_.block<kCalibration, kCalibration>(row, row) += by_camera.transpose() * by_camera;
   }
 }
 
@@ -233,7 +234,8 @@ void LinearSystem::addFeature(const Window& window, WindowFeature& feature,
     const auto target = static_cast<std::size_t>(t);
     Eigen::Vector2d pixel;
     ReprojectionJacobians j;
-    if (!reproject(anchor_camera, window.cameras[static_cast<std::size_t>(observation.camera)],
+    const VioCamera& camera = window.cameras[static_cast<std::size_t>(observation.camera)];
+    if (!reproject(anchor_camera, camera, cameraPlace(camera, window.frames[target], observation),
                    poses_[anchor], poses_[target], poses_lin_[anchor], poses_lin_[target],
                    feature.direction, feature.inverse_distance, pixel, &j,
                    refine ? &cameras : nullptr)) {
@@ -293,13 +295,14 @@ void LinearSystem::addCameras(const CameraJacobians& cameras, const WindowObserv
                               LandmarkBlock& landmark) {
   struct Part {
     int camera;
-    Matrix27d J;
+    PixelByCalibration J;
   };
-  std::array<Part, 2> parts{Part{anchor_camera, Matrix27d::Zero()},
-                            Part{observation.camera, Matrix27d::Zero()}};
+  std::array<Part, 2> parts{Part{anchor_camera, PixelByCalibration::Zero()},
+                            Part{observation.camera, PixelByCalibration::Zero()}};
   parts[0].J.leftCols<6>() = weight * cameras.d_px_d_anchor_camera;
   parts[1].J.leftCols<6>() = weight * cameras.d_px_d_target_camera;
   parts[1].J.col(6) = weight * observation.pixel_rate;
+  parts[1].J.col(7) = weight * observation.row_share * observation.pixel_rate;
   int count = 2;
   if (parts[0].camera == parts[1].camera) {
     parts[0].J += parts[1].J;
@@ -308,17 +311,20 @@ void LinearSystem::addCameras(const CameraJacobians& cameras, const WindowObserv
   for (int k = 0; k < count; ++k) {
     const Part& part = parts[static_cast<std::size_t>(k)];
     const Eigen::Index row = cameraRow(part.camera);
-    b_.segment<7>(row).noalias() += part.J.transpose() * r;
-    H_.block<7, 7>(row, row).noalias() += part.J.transpose() * part.J;
+    b_.segment<kCalibration>(row).noalias() += part.J.transpose() * r;
+    H_.block<kCalibration, kCalibration>(row, row).noalias() += part.J.transpose() * part.J;
     if (target != anchor) {
-      H_.block<7, 6>(row, kState * anchor).noalias() += part.J.transpose() * j.d_px_d_anchor;
-      H_.block<7, 6>(row, kState * target).noalias() += part.J.transpose() * j.d_px_d_target;
+      H_.block<kCalibration, 6>(row, kState * anchor).noalias() +=
+          part.J.transpose() * j.d_px_d_anchor;
+      H_.block<kCalibration, 6>(row, kState * target).noalias() +=
+          part.J.transpose() * j.d_px_d_target;
     }
     const auto begin = camera_couplings_.begin() + landmark.first_camera;
     auto it = std::find_if(begin, camera_couplings_.end(),
                            [&](const CameraCoupling& c) { return c.camera == part.camera; });
     if (it == camera_couplings_.end()) {
-      it = camera_couplings_.insert(camera_couplings_.end(), {part.camera, Matrix73d::Zero()});
+      it = camera_couplings_.insert(camera_couplings_.end(),
+                                    {part.camera, CalibrationByLandmark::Zero()});
     }
     it->W.noalias() += part.J.transpose() * j.d_px_d_landmark;
   }
@@ -326,7 +332,7 @@ void LinearSystem::addCameras(const CameraJacobians& cameras, const WindowObserv
     const bool ordered = parts[0].camera > parts[1].camera;
     const Part& low = parts[ordered ? 0 : 1];  // the lower triangle
     const Part& high = parts[ordered ? 1 : 0];
-    H_.block<7, 7>(cameraRow(low.camera), cameraRow(high.camera)).noalias() +=
+    H_.block<kCalibration, kCalibration>(cameraRow(low.camera), cameraRow(high.camera)).noalias() +=
         low.J.transpose() * high.J;
   }
 }
@@ -336,15 +342,17 @@ void LinearSystem::reduceCameras(const LandmarkBlock& landmark, const Eigen::Vec
   const auto end = begin + landmark.camera_count;
   for (auto row = begin; row != end; ++row) {
     const Eigen::Index at = cameraRow(row->camera);
-    const Matrix73d Y = row->W * landmark.V_inverse;
-    reduced_b_.segment<7>(at).noalias() -= row->W * V_b;
+    const CalibrationByLandmark Y = row->W * landmark.V_inverse;
+    reduced_b_.segment<kCalibration>(at).noalias() -= row->W * V_b;
     for (int n = landmark.first; n < landmark.first + landmark.count; ++n) {
       const CouplingBlock& column = couplings_[static_cast<std::size_t>(n)];
-      reduced_H_.block<7, 6>(at, kState * column.frame).noalias() -= Y * column.W.transpose();
+      reduced_H_.block<kCalibration, 6>(at, kState * column.frame).noalias() -=
+          Y * column.W.transpose();
     }
     for (auto column = begin; column != end; ++column) {
       if (column->camera > row->camera) continue;
-      reduced_H_.block<7, 7>(at, cameraRow(column->camera)).noalias() -= Y * column->W.transpose();
+      reduced_H_.block<kCalibration, kCalibration>(at, cameraRow(column->camera)).noalias() -=
+          Y * column->W.transpose();
     }
   }
 }
@@ -386,7 +394,7 @@ void LinearSystem::applyToLandmarks(const Eigen::VectorXd& frame_step, double& g
     }
     for (int k = landmark.first_camera; k < landmark.first_camera + landmark.camera_count; ++k) {
       const CameraCoupling& c = camera_couplings_[static_cast<std::size_t>(k)];
-      right.noalias() += c.W.transpose() * frame_step.segment<7>(cameraRow(c.camera));
+      right.noalias() += c.W.transpose() * frame_step.segment<kCalibration>(cameraRow(c.camera));
     }
     const Eigen::Vector3d step = -(landmark.V_inverse * right);
     gradient_dot_step += landmark.b.dot(step);

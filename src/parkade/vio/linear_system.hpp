@@ -82,11 +82,11 @@ class LinearSystem {
     Matrix63d W = Matrix63d::Zero();  ///< pose by landmark
   };
 
-  using Matrix73d = Eigen::Matrix<double, 7, 3>;
-  using Matrix27d = Eigen::Matrix<double, 2, 7>;
+  using CalibrationByLandmark = Eigen::Matrix<double, kCalibration, 3>;
+  using PixelByCalibration = Eigen::Matrix<double, 2, kCalibration>;
   struct CameraCoupling {
     int camera = 0;
-    Matrix73d W = Matrix73d::Zero();
+    CalibrationByLandmark W = CalibrationByLandmark::Zero();
   };
 
   void addPrior(const Window& window);

@@ -105,15 +105,19 @@ struct VioCalibrationOptions {
   bool refine_extrinsics = true;
   bool learn_sigmas = true;
   bool refine_time_offset = true;
+  bool refine_readout_time = true;
   double position_sigma = 0.005;
   double rotation_sigma_deg = 0.1;
   double time_sigma = 0.005;
+  double readout_sigma = 0.005;
 
   void visit(OptionVisitor& v) {
     v.field("refine_extrinsics", refine_extrinsics,
             "Estimate where each camera sits while driving, from the calibration on.");
     v.field("refine_time_offset", refine_time_offset,
             "Estimate each camera's time offset to the IMU while driving.");
+    v.field("refine_readout_time", refine_readout_time,
+            "Estimate how long each rolling shutter takes while driving, where the rig tells one.");
     v.field("learn_sigmas", learn_sigmas,
             "Learn how wrong the calibration is from how far cameras turn out to be off; the "
             "sigmas are where that begins. Not where the rig tells them.");
@@ -122,6 +126,8 @@ struct VioCalibrationOptions {
     v.field("rotation_sigma_deg", rotation_sigma_deg, "deg",
             "Error of the calibrated rotations about each axis, 1 sigma.", 1e-3, 10.0);
     v.field("time_sigma", time_sigma, "s", "Error of the calibrated time offsets, 1 sigma.", 1e-5,
+            0.1);
+    v.field("readout_sigma", readout_sigma, "s", "Error of the told readout times, 1 sigma.", 1e-6,
             0.1);
   }
 };

@@ -42,6 +42,7 @@ MotionPrior MotionPredictor::predict(TimeNs previous_t_ns, TimeNs t_ns) const {
     return prior;
   }
   prior.translation_valid = true;
+  prior.readout_times = readout_times_;
   const SE3 T_previous_odom = T_odom_previous.inverse();
   prior.p_previous.reserve(points_odom_.size());
   for (const auto& [id, p_odom] : points_odom_)

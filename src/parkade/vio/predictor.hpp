@@ -40,6 +40,7 @@ class MotionPredictor {
   SE3 T_vehicle_imu_;
   ReadingBuffer readings_;
   std::vector<std::pair<std::uint64_t, Eigen::Vector3d>> points_odom_;
+  std::vector<double> readout_times_;
 };
 
 }  // namespace parkade

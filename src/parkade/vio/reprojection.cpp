@@ -8,16 +8,25 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Matrix23d = Eigen::Matrix<double, 2, 3>;
 
+SE3 cameraPlace(const VioCamera& camera, const WindowFrame& frame,
+                const WindowObservation& observation) {
+  const double later = camera.readout_time * observation.row_share;
+  if (later == 0.0) return camera.T_imu_cam;
+  Vector6d twist;
+  twist << frame.state.R_odom_imu.inverse() * frame.state.v_odom, frame.gyro - frame.bias.gyro;
+  return SE3::exp(later * twist) * camera.T_imu_cam;
+}
+
 bool reproject(const VioCamera& anchor_camera, const VioCamera& target_camera,
-               const PoseMatrices& anchor, const PoseMatrices& target,
+               const SE3& T_imu_target, const PoseMatrices& anchor, const PoseMatrices& target,
                const PoseMatrices& anchor_lin, const PoseMatrices& target_lin,
                const Vector3d& direction, double inverse_distance, Eigen::Vector2d& pixel,
                ReprojectionJacobians* jacobians, CameraJacobians* camera_jacobians) {
   const double rho = inverse_distance;
   const Matrix3d R_imu_anchor = anchor_camera.T_imu_cam.rotation().matrix();
-  const Matrix3d R_target_imu = target_camera.T_imu_cam.rotation().matrix().transpose();
+  const Matrix3d R_target_imu = T_imu_target.rotation().matrix().transpose();
   const Vector3d& t_anchor = anchor_camera.T_imu_cam.translation();
-  const Vector3d& t_target = target_camera.T_imu_cam.translation();
+  const Vector3d& t_target = T_imu_target.translation();
 
   // The point times its inverse distance, which stays finite for points at infinity.
   const Vector3d x_anchor = R_imu_anchor * direction + rho * t_anchor;

@@ -30,17 +30,35 @@ struct CameraJacobians {
   Eigen::Matrix<double, 2, 6> d_px_d_target_camera;
 };
 
+/// Where a camera sat on the car when it read an observation's row, seen from the frame's instant
+/// (T_imu_cam): a rolling shutter reads the rows one after the other, and the car goes on
+/// meanwhile. docs/math/residuals.md, eq. (3c). The motion counts as known: it has no Jacobians.
+SE3 cameraPlace(const VioCamera& camera, const WindowFrame& frame,
+                const WindowObservation& observation);
+
 /// Where a landmark, given by direction and inverse distance in its anchor camera, appears in a
 /// target camera; docs/math/residuals.md, eq. (3). False where the camera cannot see it.
 ///
-/// The Jacobians of the motion are taken at the poses *_lin, those of the projection at the present
-/// point: a change of all poses by one motion of the odom frame then leaves them without effect at
-/// any state (first-estimate Jacobians; docs/math/marginalisation.md).
+/// T_imu_target: where the target camera sits, as cameraPlace() tells; without it as it sits at the
+/// frame's instant. The Jacobians of the motion are taken at the poses *_lin, those of the
+/// projection at the present point: a change of all poses by one motion of the odom frame then
+/// leaves them without effect at any state (first-estimate Jacobians;
+/// docs/math/marginalisation.md).
 bool reproject(const VioCamera& anchor_camera, const VioCamera& target_camera,
-               const PoseMatrices& anchor, const PoseMatrices& target,
+               const SE3& T_imu_target, const PoseMatrices& anchor, const PoseMatrices& target,
                const PoseMatrices& anchor_lin, const PoseMatrices& target_lin,
                const Eigen::Vector3d& direction, double inverse_distance, Eigen::Vector2d& pixel,
                ReprojectionJacobians* jacobians = nullptr,
                CameraJacobians* camera_jacobians = nullptr);
+inline bool reproject(const VioCamera& anchor_camera, const VioCamera& target_camera,
+                      const PoseMatrices& anchor, const PoseMatrices& target,
+                      const PoseMatrices& anchor_lin, const PoseMatrices& target_lin,
+                      const Eigen::Vector3d& direction, double inverse_distance,
+                      Eigen::Vector2d& pixel, ReprojectionJacobians* jacobians = nullptr,
+                      CameraJacobians* camera_jacobians = nullptr) {
+  return reproject(anchor_camera, target_camera, target_camera.T_imu_cam, anchor, target,
+                   anchor_lin, target_lin, direction, inverse_distance, pixel, jacobians,
+                   camera_jacobians);
+}
 
 }  // namespace parkade

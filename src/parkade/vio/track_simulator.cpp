@@ -154,7 +154,9 @@ class TrackMaker {
     for (std::size_t i = 0; i < points.size(); ++i) grid_[cell(points[i])].push_back(i);
   }
 
-  TrackSet make(TimeNs t_ns, const SE3& T_world_vehicle) {
+  /// T_world_vehicle: by the time after the frame's instant, s.
+  TrackSet make(TimeNs t_ns, const std::function<SE3(double)>& T_world_vehicle_at) {
+    const SE3 T_world_vehicle = T_world_vehicle_at(0.0);
     TrackSet set;
     set.t_ns = t_ns;
     set.camera_ok.assign(rig_.cameras.size(), 1);
@@ -167,6 +169,7 @@ class TrackMaker {
         Eigen::Vector2d pixel;
         if (p_cam.norm() > 0.6 && p_cam.norm() < options_.max_range &&
             rig_.cameras[c].camera.project(p_cam, pixel) &&
+            rollOn(rig_.cameras[c], points_[i], T_world_vehicle_at, pixel) &&
             rig_.cameras[c].camera.inImage(pixel, 4.0)) {
           visible[c].emplace(i, pixel);
         }
@@ -194,6 +197,15 @@ class TrackMaker {
   }
 
  private:
+  // To where a rolling shutter has a point: at the row that is read as it shows there.
+  static bool rollOn(const RigCamera& camera, const Vector3d& point,
+                     const std::function<SE3(double)>& T_world_vehicle_at, Eigen::Vector2d& pixel) {
+    for (int i = 0; i < 4 && camera.readout_time > 0.0; ++i) {
+      const SE3 T_world_cam = T_world_vehicle_at(camera.rowTime(pixel.y())) * camera.T_vehicle_cam;
+      if (!camera.camera.project(T_world_cam.inverse() * point, pixel)) return false;
+    }
+    return true;
+  }
   using Cell = std::pair<int, int>;
   static Cell cell(const Vector3d& p) {
     return {static_cast<int>(std::floor(p.x() / 5.0)), static_cast<int>(std::floor(p.y() / 5.0))};
@@ -372,7 +384,8 @@ SimulatedDrive simulateDrive(const Rig& rig, const TrackSimulatorOptions& option
     const TimeNs t = begin + fromSeconds(i / options.frame_rate + 0.0017);
     if (t > end) break;
     const TimeNs seen = t + fromSeconds(options.camera_delay);
-    drive.frames.push_back(maker.make(t, drive.truth.at(seen).T_world_body));
+    drive.frames.push_back(maker.make(
+        t, [&](double later) { return drive.truth.at(seen + fromSeconds(later)).T_world_body; }));
   }
   return drive;
 }

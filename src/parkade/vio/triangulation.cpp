@@ -23,8 +23,9 @@ constexpr int kIterations = 6;
 struct View {
   const WindowObservation* observation;
   PoseMatrices imu;
-  Vector3d centre_odom;
-  Vector3d ray_odom;
+  SE3 T_imu_cam;  // when its row was read
+  Vector3d centre_odom = Vector3d::Zero();
+  Vector3d ray_odom = Vector3d::UnitZ();
 };
 
 std::vector<View> collectViews(const Window& window, const WindowFeature& feature) {
@@ -33,10 +34,10 @@ std::vector<View> collectViews(const Window& window, const WindowFeature& featur
   for (const WindowObservation& observation : feature.observations) {
     const WindowFrame* frame = window.find(observation.frame_id);
     if (frame == nullptr) continue;
-    const SE3& T_imu_cam = window.cameras[static_cast<std::size_t>(observation.camera)].T_imu_cam;
-    View view{&observation, PoseMatrices(frame->state), {}, {}};
-    view.centre_odom = view.imu.R * T_imu_cam.translation() + view.imu.p;
-    view.ray_odom = view.imu.R * (T_imu_cam.rotation() * observation.ray);
+    const VioCamera& camera = window.cameras[static_cast<std::size_t>(observation.camera)];
+    View view{&observation, PoseMatrices(frame->state), cameraPlace(camera, *frame, observation)};
+    view.centre_odom = view.imu.R * view.T_imu_cam.translation() + view.imu.p;
+    view.ray_odom = view.imu.R * (view.T_imu_cam.rotation() * observation.ray);
     views.push_back(view);
   }
   return views;
@@ -58,8 +59,8 @@ bool evaluate(const Window& window, const std::vector<View>& views, const Vector
     ReprojectionJacobians j;
     if (!reproject(anchor_camera,
                    window.cameras[static_cast<std::size_t>(view.observation->camera)],
-                   views.front().imu, view.imu, views.front().imu, view.imu, direction,
-                   inverse_distance, pixel, &j)) {
+                   view.T_imu_cam, views.front().imu, view.imu, views.front().imu, view.imu,
+                   direction, inverse_distance, pixel, &j)) {
       return false;
     }
     const double weight = 1.0 / view.observation->sigma_px;
@@ -106,7 +107,12 @@ bool triangulate(const Window& window, WindowFeature& feature, const Triangulati
   }
 
   // 2. Gauss-Newton on the pixels.
-  Vector3d direction = anchor.observation->ray;
+  const VioCamera& first_camera = window.cameras[static_cast<std::size_t>(first.camera)];
+  Vector3d direction = first.ray;
+  if (first_camera.readout_time > 0.0) {
+    direction =
+        first_camera.T_imu_cam.rotation().inverse() * (anchor.T_imu_cam.rotation() * first.ray);
+  }
   Matrix3d H;
   Vector3d b;
   double worst = 0.0;

@@ -69,7 +69,7 @@ Eigen::VectorXd Window::globalDelta() const {
   Eigen::VectorXd delta(globalSize());
   delta.head<2>() = gravity.delta;
   for (std::size_t c = 0; c < refinements.size(); ++c) {
-    delta.segment<7>(cameraGlobal(c)) = refinements[c].delta;
+    delta.segment<kCalibration>(cameraGlobal(c)) = refinements[c].delta;
   }
   return delta;
 }
@@ -79,18 +79,21 @@ void Window::applyGlobals(const Eigen::VectorXd& step) {
   for (std::size_t c = 0; c < refinements.size(); ++c) {
     CameraRefinement& refinement = refinements[c];
     VioCamera& camera = cameras[c];
-    Vector7d move = step.segment<7>(cameraGlobal(c));
+    CalibrationVector move = step.segment<kCalibration>(cameraGlobal(c));
     SE3 from = camera.T_imu_cam;
     double offset = camera.time_offset;
+    double readout = camera.readout_time;
     if (refinement.linearised) {
       refinement.delta += move;
       move = refinement.delta;
       from = refinement.lin_T_imu_cam;
       offset = refinement.lin_time_offset;
+      readout = refinement.lin_readout_time;
     }
     camera.T_imu_cam =
         SE3(from.rotation() * SO3::exp(move.segment<3>(3)), from.translation() + move.head<3>());
     camera.time_offset = offset + move(6);
+    camera.readout_time = readout + move(7);
   }
 }
 
@@ -102,6 +105,7 @@ void Window::fixGlobals() {
     refinement.linearised = true;
     refinement.lin_T_imu_cam = cameras[c].T_imu_cam;
     refinement.lin_time_offset = cameras[c].time_offset;
+    refinement.lin_readout_time = cameras[c].readout_time;
     refinement.delta.setZero();
   }
 }

@@ -15,27 +15,32 @@
 
 namespace parkade {
 
-using Vector7d = Eigen::Matrix<double, 7, 1>;
+inline constexpr int kCalibration = 8;  ///< size of a camera's tangent
+using CalibrationVector = Eigen::Matrix<double, kCalibration, 1>;
+using CalibrationMatrix = Eigen::Matrix<double, kCalibration, kCalibration>;
 
 /// A camera as the estimator needs it.
 struct VioCamera {
   Camera camera;
   SE3 T_imu_cam;
-  double time_offset = 0.0;  ///< s; added to a stamp gives the time on the IMU's clock
+  double time_offset = 0.0;   ///< s; added to a stamp gives the time on the IMU's clock
+  double readout_time = 0.0;  ///< s from the first row to the last (RigCamera)
 };
 
-/// What is known of a camera's calibration before any image, where it is refined online. Seven
+/// What is known of a camera's calibration before any image, where it is refined online. Eight
 /// degrees of freedom: position (imu axes, m), rotation (right perturbation of R_imu_cam, rad),
-/// time offset (s).
+/// time offset (s), readout time (s).
 struct CameraRefinement {
   SE3 prior_T_imu_cam;
   double prior_time_offset = 0.0;
-  Vector7d sigma = Vector7d::Ones();
+  double prior_readout_time = 0.0;
+  CalibrationVector sigma = CalibrationVector::Ones();
 
   bool linearised = false;
   SE3 lin_T_imu_cam;
   double lin_time_offset = 0.0;
-  Vector7d delta = Vector7d::Zero();
+  double lin_readout_time = 0.0;
+  CalibrationVector delta = CalibrationVector::Zero();
 };
 
 inline constexpr int kState = 15;  ///< size of a frame's tangent
@@ -112,6 +117,8 @@ struct WindowObservation {
   /// frame's velocity, for differences of pixels would correlate with their noise.
   Eigen::Vector2d pixel_rate = Eigen::Vector2d::Zero();
   double sigma_px = 1.0;
+  /// When its row is read, from -0.5 of the camera's readout time for the first row to 0.5.
+  double row_share = 0.0;
 };
 
 /// Features of one frame set and where they were seen.
@@ -176,12 +183,12 @@ struct Window {
   [[nodiscard]] int indexOf(int frame_id) const;
   [[nodiscard]] WindowFrame* find(int frame_id);
   [[nodiscard]] const WindowFrame* find(int frame_id) const;
-  /// The globals: gravity's two degrees of freedom, then seven of every refined camera.
+  /// The globals: gravity's two degrees of freedom, then those of every refined camera.
   [[nodiscard]] Eigen::Index globalSize() const;
   static constexpr Eigen::Index kGravitySize = 2;
-  /// Where a refined camera's seven begin among the globals.
+  /// Where a refined camera's begin among the globals.
   [[nodiscard]] static constexpr Eigen::Index cameraGlobal(std::size_t camera) {
-    return kGravitySize + 7 * static_cast<Eigen::Index>(camera);
+    return kGravitySize + kCalibration * static_cast<Eigen::Index>(camera);
   }
   [[nodiscard]] Eigen::VectorXd globalDelta() const;
   void applyGlobals(const Eigen::VectorXd& step);

@@ -189,10 +189,10 @@ double whitenedError(const Window& window, const WindowFeature& feature,
   const PoseMatrices anchor_pose(anchor->state);
   const PoseMatrices target_pose(target->state);
   Eigen::Vector2d pixel;
-  if (!reproject(window.cameras[static_cast<std::size_t>(feature.anchor_camera)],
-                 window.cameras[static_cast<std::size_t>(observation.camera)], anchor_pose,
-                 target_pose, anchor_pose, target_pose, feature.direction, feature.inverse_distance,
-                 pixel)) {
+  const VioCamera& camera = window.cameras[static_cast<std::size_t>(observation.camera)];
+  if (!reproject(window.cameras[static_cast<std::size_t>(feature.anchor_camera)], camera,
+                 cameraPlace(camera, *target, observation), anchor_pose, target_pose, anchor_pose,
+                 target_pose, feature.direction, feature.inverse_distance, pixel)) {
     return std::numeric_limits<double>::infinity();
   }
   return (pixel - observedPixel(window, observation)).norm() / observation.sigma_px;
@@ -211,9 +211,10 @@ Eigen::Matrix3d landmarkCovariance(const Window& window, const WindowFeature& fe
     const PoseMatrices target_pose(target->state);
     Eigen::Vector2d pixel;
     ReprojectionJacobians j;
-    if (!reproject(anchor_camera, window.cameras[static_cast<std::size_t>(o.camera)], anchor_pose,
-                   target_pose, anchor_pose, target_pose, feature.direction,
-                   feature.inverse_distance, pixel, &j)) {
+    const VioCamera& camera = window.cameras[static_cast<std::size_t>(o.camera)];
+    if (!reproject(anchor_camera, camera, cameraPlace(camera, *target, o), anchor_pose, target_pose,
+                   anchor_pose, target_pose, feature.direction, feature.inverse_distance, pixel,
+                   &j)) {
       continue;
     }
     const double sigma = feature.noise_factor * o.sigma_px;
