@@ -18,6 +18,7 @@ struct Entry {
   bool covered = false;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
   Eigen::Matrix<double, 2, 3> d_pixel_d_attitude = Eigen::Matrix<double, 2, 3>::Zero();
+  Eigen::Matrix<double, 2, 3> d_pixel_d_motion = Eigen::Matrix<double, 2, 3>::Zero();
   double weight = 0.0;
 };
 
@@ -47,8 +48,17 @@ Entry makeEntry(const RigCamera& rig_camera, const Eigen::Vector2d& ground, doub
   d_vehicle_d_attitude.col(0) = -Eigen::Vector3d::UnitY().cross(p_ground);
   d_vehicle_d_attitude.col(1) = -Eigen::Vector3d::UnitX().cross(p_ground);
   d_vehicle_d_attitude.col(2) = -Eigen::Vector3d::UnitZ();
-  entry.d_pixel_d_attitude =
-      d_pixel_d_cam * T_cam_vehicle.rotation().matrix() * d_vehicle_d_attitude;
+  const Eigen::Matrix<double, 2, 3> d_pixel_d_vehicle =
+      d_pixel_d_cam * T_cam_vehicle.rotation().matrix();
+  entry.d_pixel_d_attitude = d_pixel_d_vehicle * d_vehicle_d_attitude;
+
+  // Equation (4b): until its row is read the point comes nearer by (v + w e_z x p) times that long.
+  Eigen::Matrix3d d_vehicle_d_motion;
+  d_vehicle_d_motion.col(0) = -Eigen::Vector3d::UnitX();
+  d_vehicle_d_motion.col(1) = -Eigen::Vector3d::UnitY();
+  d_vehicle_d_motion.col(2) = -Eigen::Vector3d::UnitZ().cross(p_ground);
+  entry.d_pixel_d_motion =
+      rig_camera.rowTime(entry.pixel.y()) * d_pixel_d_vehicle * d_vehicle_d_motion;
 
   // Equation (4): image pixels per metre along the line of sight fall with the square of the slant
   // range; the border fades over an eighth of the image's height.
@@ -113,6 +123,8 @@ GroundTable::GroundTable(const RigCamera& camera, const BevGeometry& geometry, d
     base_[axis] = cv::Mat(roi_.size(), CV_32FC1, cv::Scalar(kNowhere));
     for (cv::Mat& derivative : derivative_[axis])
       derivative = cv::Mat::zeros(roi_.size(), CV_32FC1);
+    if (camera.readout_time <= 0.0) continue;
+    for (cv::Mat& derivative : by_motion_[axis]) derivative = cv::Mat::zeros(roi_.size(), CV_32FC1);
   }
   for (int v = 0; v < roi_.height; ++v) {
     for (int u = 0; u < roi_.width; ++u) {
@@ -126,6 +138,8 @@ GroundTable::GroundTable(const RigCamera& camera, const BevGeometry& geometry, d
         for (int k = 0; k < 3; ++k) {
           derivative_[axis][k].at<float>(v, u) =
               static_cast<float>(entry.d_pixel_d_attitude(axis, k));
+          if (by_motion_[axis][k].empty()) continue;
+          by_motion_[axis][k].at<float>(v, u) = static_cast<float>(entry.d_pixel_d_motion(axis, k));
         }
       }
     }
@@ -154,10 +168,13 @@ void GroundTable::hide(const cv::Mat& mask) {
   }
 }
 
-void GroundTable::mapFor(const GroundAttitude& attitude, const cv::Mat& relief, cv::Mat& map_x,
-                         cv::Mat& map_y) const {
+void GroundTable::mapFor(const GroundAttitude& attitude, const cv::Mat& relief,
+                         const GroundMotion& motion, cv::Mat& map_x, cv::Mat& map_y) const {
   const float change[3] = {static_cast<float>(attitude.pitch), static_cast<float>(attitude.roll),
                            static_cast<float>(attitude.height)};
+  const float going[3] = {static_cast<float>(motion.velocity.x()),
+                          static_cast<float>(motion.velocity.y()),
+                          static_cast<float>(motion.yaw_rate)};
   cv::Mat* maps[2] = {&map_x, &map_y};
   for (int axis = 0; axis < 2; ++axis) {
     maps[axis]->create(roi_.size(), CV_32FC1);
@@ -169,6 +186,14 @@ void GroundTable::mapFor(const GroundAttitude& attitude, const cv::Mat& relief, 
       float* out = maps[axis]->ptr<float>(v);
       for (int u = 0; u < roi_.width; ++u) {
         out[u] = base[u] + d0[u] * change[0] + d1[u] * change[1] + d2[u] * change[2];
+      }
+      if (!by_motion_[axis][0].empty()) {
+        const float* m0 = by_motion_[axis][0].ptr<float>(v);
+        const float* m1 = by_motion_[axis][1].ptr<float>(v);
+        const float* m2 = by_motion_[axis][2].ptr<float>(v);
+        for (int u = 0; u < roi_.width; ++u) {
+          out[u] += m0[u] * going[0] + m1[u] * going[1] + m2[u] * going[2];
+        }
       }
       if (relief.empty()) continue;
       // Floor that lies higher is as a body that stands lower.

@@ -39,14 +39,16 @@ class GroundTable {
 
   /// Image points for an attitude, as cv::remap takes them: CV_32FC1 each, of roi()'s size; far
   /// outside the image where not covered. relief: reliefPicture() of the whole picture.
-  void mapFor(const GroundAttitude& attitude, const cv::Mat& relief, cv::Mat& map_x,
-              cv::Mat& map_y) const;
+  /// motion: counts where the camera has a rolling shutter alone; ipm.md, eq. (4b).
+  void mapFor(const GroundAttitude& attitude, const cv::Mat& relief, const GroundMotion& motion,
+              cv::Mat& map_x, cv::Mat& map_y) const;
 
  private:
   cv::Rect roi_;
   cv::Mat weight_;
   cv::Mat base_[2];           ///< image point at attitude zero: x, y
   cv::Mat derivative_[2][3];  ///< of x, y by pitch, roll, height
+  cv::Mat by_motion_[2][3];   ///< by velocity's x, y and yaw rate; empty where all rows are one
 };
 
 }  // namespace parkade

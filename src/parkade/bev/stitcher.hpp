@@ -55,10 +55,14 @@ class BevStitcher {
   /// The camera sits elsewhere than the rig said; its mask stays.
   void moveCamera(int camera, const SE3& T_vehicle_cam);
 
+  /// Its rolling shutter takes longer or less long than the rig said, s; of no use to others.
+  void setReadoutTime(int camera, double seconds);
+
   /// Images must have the sizes of the rig's cameras and be all grey or all BGR (checked); empty
-  /// ones are left out. relief: of the floor over the attitude's plane.
+  /// ones are left out. relief: of the floor over the attitude's plane. motion: the picture is that
+  /// of the frame set's stamp, however long cameras take to read their rows.
   [[nodiscard]] BevImage stitch(const FrameSet& frames, const GroundAttitude& attitude = {},
-                                const GroundRelief& relief = {});
+                                const GroundRelief& relief = {}, const GroundMotion& motion = {});
 
   [[nodiscard]] const BevGeometry& geometry() const { return geometry_; }
   [[nodiscard]] const GroundTable& table(int camera) const { return tables_[camera]; }
@@ -79,7 +83,8 @@ class BevStitcher {
   Rig rig_;
   BevGeometry geometry_;
   std::vector<GroundTable> tables_;
-  std::vector<cv::Mat> masks_;  ///< of the own body; empty: none
+  std::vector<double> readout_share_;  ///< of the readout times that the tables were made for
+  std::vector<cv::Mat> masks_;         ///< of the own body; empty: none
   std::vector<Overlap> overlaps_;
   cv::Mat car_mask_;  ///< 255 on the own car
   Eigen::VectorXd log_gains_;

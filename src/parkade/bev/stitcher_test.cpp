@@ -40,14 +40,17 @@ Rig testRig() {
 
 // What the cameras see of the textured ground when the body stands at an attitude over its plane.
 FrameSet renderGround(const Rig& rig, const GroundAttitude& attitude,
-                      const GroundRelief& relief = {}) {
-  const SE3 T_ground_vehicle(SO3::fromYawPitchRoll(0.0, attitude.pitch, attitude.roll),
-                             Eigen::Vector3d(0.0, 0.0, attitude.height));
+                      const GroundRelief& relief = {}, const GroundMotion& motion = {}) {
+  const SE3 T_ground_stamp(SO3::fromYawPitchRoll(0.0, attitude.pitch, attitude.roll),
+                           Eigen::Vector3d(0.0, 0.0, attitude.height));
   FrameSet frames;
   for (const RigCamera& camera : rig.cameras) {
-    const SE3 T_ground_cam = T_ground_vehicle * camera.T_vehicle_cam;
     cv::Mat image = cv::Mat::zeros(camera.camera.height(), camera.camera.width(), CV_8UC1);
     for (int v = 0; v < image.rows; ++v) {
+      const double late = camera.rowTime(v);
+      const SE3 T_stamp_row(SO3::exp({0.0, 0.0, late * motion.yaw_rate}),
+                            {late * motion.velocity.x(), late * motion.velocity.y(), 0.0});
+      const SE3 T_ground_cam = T_ground_stamp * T_stamp_row * camera.T_vehicle_cam;
       for (int u = 0; u < image.cols; ++u) {
         Eigen::Vector3d ray;
         if (!camera.camera.unproject(Eigen::Vector2d(u, v), ray)) continue;
@@ -105,6 +108,18 @@ TEST(BevStitcher, AgreesWithTheTrueGround) {
   const BevImage bev = stitcher.stitch(renderGround(rig, {}));
   EXPECT_LT(rmsError(bev, 6.0), 0.8);  // rounding twice and interpolating once
   EXPECT_GT(coverage(bev), 0.85);
+}
+
+TEST(BevStitcher, CorrectsARollingShutter) {
+  Rig rig = testRig();
+  for (RigCamera& camera : rig.cameras) camera.readout_time = 0.06;
+  const GroundMotion motion{{4.0, 0.1}, 0.4};
+  const FrameSet frames = renderGround(rig, {}, {}, motion);
+  BevStitcher stitcher(rig, {});
+  const double uncorrected = rmsError(stitcher.stitch(frames), 6.0);
+  const double corrected = rmsError(stitcher.stitch(frames, {}, {}, motion), 6.0);
+  EXPECT_GT(uncorrected, 1.5);
+  EXPECT_LT(corrected, 0.8);  // as of a car that stands
 }
 
 TEST(BevStitcher, CorrectsPitchRollAndHeight) {

@@ -149,7 +149,7 @@ cv::Mat SemanticSampler::labelPicture(const SemanticSample& sample,
     const GroundTable& table = stitcher_->table(static_cast<int>(i));
     const cv::Rect roi = table.roi();
     if (roi.empty()) continue;
-    table.mapFor(sample.attitude, relief, map_x, map_y);
+    table.mapFor(sample.attitude, relief, {}, map_x, map_y);
     const RigCamera& camera = simulation_->trueRig().cameras[i];
     cv::Mat directions(roi.size(), CV_32FC3, cv::Scalar::all(0.0));
     cv::Mat mine(roi.size(), CV_8UC1, cv::Scalar(0));

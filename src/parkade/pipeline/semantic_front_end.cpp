@@ -86,6 +86,9 @@ struct SemanticFrontEnd::Impl {
     sights.clear();
   }
 
+  // Tells what reads a camera's own pictures where it was.
+  void placeReaders(int camera, const SE3& T_vehicle_cam, const Vector6d& twist);
+
   struct View {
     GroundPlaneEstimate floor;
     PoseEstimate now;
@@ -107,6 +110,7 @@ struct SemanticFrontEnd::Impl {
   std::unique_ptr<PaintedNumberFrontEnd> numbers;    // null likewise
   std::vector<SE3> cameras;                          // where they are taken to sit
   std::vector<SE3> told;                             // and where the calibration says
+  GroundMotion motion;                               // while rows are read
   std::optional<View> newest;                        // of the last addOdometry()
   std::optional<PoseEstimate> last_look;
   // Taken by take(), used by look(), which may work in another thread meanwhile.
@@ -130,7 +134,7 @@ SemanticFrontEnd::Impl::View SemanticFrontEnd::Impl::nextView() {
 
 Result<SemanticFrame> SemanticFrontEnd::Impl::lookDown(const FrameSet& frames, const View& view) {
   Clock::time_point begin = Clock::now();
-  bev = stitcher.stitch(frames, view.floor.attitude, view.floor.relief);
+  bev = stitcher.stitch(frames, view.floor.attitude, view.floor.relief, motion);
   stitch_clock.add(since(begin));
   begin = Clock::now();
   Result<BevLabels> labels = network.segment(bev);
@@ -231,23 +235,41 @@ void SemanticFrontEnd::take() {
   m.views.push_back(*m.newest);
 }
 
-void SemanticFrontEnd::placeCameras(const std::vector<SE3>& T_vehicle_cam) {
+void SemanticFrontEnd::Impl::placeReaders(int camera, const SE3& T_vehicle_cam,
+                                          const Vector6d& twist) {
+  const RigCamera& eye = rig.cameras[static_cast<std::size_t>(camera)];
+  // What stands upright shows about the horizon, what is painted on the floor below it.
+  constexpr double kMarker[2] = {6.0, 1.5};  // m before the camera, m high
+  constexpr double kPaint[2] = {3.0, 0.0};
+  const auto at = [&](const double(&place)[2]) {
+    return cameraAtRow(eye, T_vehicle_cam, rowOf(eye, place[0], place[1]), twist);
+  };
+  if (zone_markers != nullptr) zone_markers->moveCamera(camera, at(kMarker));
+  if (numbers != nullptr) numbers->moveCamera(camera, at(kPaint));
+}
+
+void SemanticFrontEnd::placeCameras(const CamerasAtStamp& cameras) {
   // Moves a point of the floor at 5 m by 4 mm, and at 8 m by 1 cm, from a camera 1 m high.
   constexpr double kTurn = 1.75e-4;  // rad
   constexpr double kStep = 1e-3;     // m
   Impl& m = *impl_;
-  const std::size_t count = std::min(T_vehicle_cam.size(), m.cameras.size());
+  m.motion = cameras.motion();
+  const std::size_t count = std::min(cameras.T_vehicle_cam.size(), m.cameras.size());
   for (std::size_t c = 0; c < count; ++c) {
-    const SE3& now = T_vehicle_cam[c];
+    const SE3& now = cameras.T_vehicle_cam[c];
+    const int camera = static_cast<int>(c);
+    if (m.rig.cameras[c].readout_time > 0.0) {
+      m.rig.cameras[c].readout_time = std::max(1e-6, cameras.readout_time[c]);
+      m.stitcher.setReadoutTime(camera, cameras.readout_time[c]);
+      m.placeReaders(camera, now, cameras.twist);
+    }
     if (angleBetween(now.rotation(), m.cameras[c].rotation()) < kTurn &&
         (now.translation() - m.cameras[c].translation()).norm() < kStep) {
       continue;
     }
     m.cameras[c] = now;
-    const int camera = static_cast<int>(c);
     m.stitcher.moveCamera(camera, now);
-    if (m.zone_markers != nullptr) m.zone_markers->moveCamera(camera, now);
-    if (m.numbers != nullptr) m.numbers->moveCamera(camera, now);
+    m.placeReaders(camera, now, cameras.twist);
   }
   m.renewSights();
 }

@@ -10,6 +10,7 @@
 #include "parkade/bev/stitcher.hpp"
 #include "parkade/core/options.hpp"
 #include "parkade/core/result.hpp"
+#include "parkade/pipeline/late_cameras.hpp"
 #include "parkade/pipeline/painted_number_front_end.hpp"
 #include "parkade/pipeline/stage_clock.hpp"
 #include "parkade/pipeline/thread_pool.hpp"
@@ -80,9 +81,9 @@ class SemanticFrontEnd {
   /// The pictures of the last frame set will be looked at: look() must be called with them, once,
   /// in the order of these calls; in another thread if need be.
   void take();
-  /// Where the cameras sit by what is known now, one a camera: from the next look() on. Small moves
-  /// are left until they add up.
-  void placeCameras(const std::vector<SE3>& T_vehicle_cam);
+  /// Where the cameras sit by what is known now, one a camera, and how the car moves: from the next
+  /// look() on. Small moves are left until they add up.
+  void placeCameras(const CamerasAtStamp& cameras);
   /// The features of the first frame set that was taken. The stitched picture and the cameras'
   /// own are looked at beside each other, by the caller and `beside`.
   Result<SemanticFrame> look(const FrameSet& frames, ThreadPool& beside);

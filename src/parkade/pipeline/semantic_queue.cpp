@@ -56,7 +56,7 @@ bool SemanticQueue::wants(int number, const PoseEstimate& odometry,
 }
 
 void SemanticQueue::take(FrameSet frames, int number, const SE3& T_odom_vehicle,
-                         std::vector<SE3> cameras) {
+                         CamerasAtStamp cameras) {
   front_end_->take();
   mapper_.holdView();
   auto look = std::make_unique<Look>();

@@ -44,8 +44,8 @@ class SemanticQueue {
   /// driven and not passed over: take() them then.
   bool wants(int number, const PoseEstimate& odometry, const std::vector<Landmark>& landmarks);
   /// Sends the pictures of the frame set off that was just wanted. cameras: where they sit by now,
-  /// empty: as the rig says.
-  void take(FrameSet frames, int number, const SE3& T_odom_vehicle, std::vector<SE3> cameras);
+  /// none: as the rig says.
+  void take(FrameSet frames, int number, const SE3& T_odom_vehicle, CamerasAtStamp cameras);
   /// Waits for all that is on its way and enters it.
   void finish();
   /// Waits for all that is on its way, and drops it.
@@ -65,7 +65,7 @@ class SemanticQueue {
     FrameSet frames;
     int number = 0;  // of the frame set
     SE3 T_odom_vehicle;
-    std::vector<SE3> cameras;
+    CamerasAtStamp cameras;
     Result<SemanticFrame> frame = Error{"not looked yet"};
     std::vector<LevelView> views;
     BusyTime::Clock::time_point begin;

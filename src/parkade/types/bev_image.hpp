@@ -37,6 +37,12 @@ struct GroundAttitude {
   double height = 0.0;  ///< m, of the vehicle frame's origin over the ground
 };
 
+/// How the car goes over the ground while a rolling shutter reads its rows.
+struct GroundMotion {
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< m/s, levelled vehicle frame
+  double yaw_rate = 0.0;                               ///< rad/s
+};
+
 /// All cameras of one instant on the ground plane, in one picture.
 struct BevImage {
   TimeNs t_ns = 0;
