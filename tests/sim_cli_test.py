@@ -139,6 +139,19 @@ class SimTest(unittest.TestCase):
         self.assertFalse(any(edges[None]) or any(edges["0"]))
         self.assertTrue(any(edges["1"]))
 
+    def test_rolling_shutters_are_told(self):
+        quick = ["--no-images", "--duration", "1"]
+        for readout in ["0", "30"]:
+            out = self.folder / f"readout_{readout}"
+            result = sim(*quick, "--readout-ms", readout, "--out", out)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            rolling = readout == "30"
+            rig = (out / "rig.yaml").read_text(encoding="utf-8")
+            self.assertEqual(rig.count("readout_time: 0.03\n"), 6 if rolling else 0)
+            # Recordings from before the option go on: their spec.yaml does not know it.
+            spec = (out / "spec.yaml").read_text(encoding="utf-8")
+            self.assertEqual("readout_ms" in spec, rolling)
+
     @unittest.skipUnless(pathlib.Path("/dev/full").exists(), "needs /dev/full")
     def test_full_disk_is_named(self):
         quick = ["--no-images", "--duration", "1", "--out", self.out]

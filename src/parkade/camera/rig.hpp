@@ -15,6 +15,8 @@
 
 namespace parkade {
 
+inline constexpr double kMaxReadoutTime = 0.2;  ///< s; what takes longer is told in another unit
+
 /// How long after the middle row one of height rows is taken, s, where all take readout_time. What
 /// lies above or below the picture counts as its first or last row.
 inline double rowTimeOf(double readout_time, double row, int height) {

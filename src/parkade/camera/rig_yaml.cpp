@@ -56,11 +56,10 @@ RigCamera readRigCamera(const YamlNode& node) {
   }
   if (node.has("readout_time")) {
     camera.readout_time = readPositive(node.at("readout_time"));
-    constexpr double kMaxReadout = 0.2;
-    if (camera.readout_time > kMaxReadout) {
+    if (camera.readout_time > kMaxReadoutTime) {
       node.at("readout_time")
           .fail(fmt::format("{} s from the first row to the last is beyond {} s (is it in ms?)",
-                            camera.readout_time, kMaxReadout));
+                            camera.readout_time, kMaxReadoutTime));
     }
   }
   if (node.has("rate")) camera.rate_hz = readPositive(node.at("rate"));

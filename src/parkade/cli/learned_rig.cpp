@@ -33,7 +33,7 @@ Result<std::string> rigFileOf(const std::string& path) {
   if (std::filesystem::is_regular_file(file, code)) return file;
   return Error{
       fmt::format("{}: holds no rig.yaml; a run writes one where it has a pose and refines its "
-                  "cameras' places or clocks (vio.calibration)",
+                  "cameras' places, clocks or readout times (vio.calibration)",
                   path)};
 }
 
@@ -51,8 +51,9 @@ Rig learnedRig(const Rig& told, const std::vector<CameraCalibrationEstimate>& le
     }
     // To the microsecond: an offset that is not refined is held to a few nanoseconds.
     camera.time_offset_ns += 1000 * std::llround(1e6 * learned[c].time_offset);
-    if (camera.readout_time > 0.0) {
-      camera.readout_time = std::max(1e-6, 1e-6 * std::round(1e6 * learned[c].readout_time));
+    if (camera.readout_time > 0.0 && sigma(7) > 0.0) {
+      const double to_microsecond = std::round(1e6 * learned[c].readout_time) / 1e6;
+      camera.readout_time = std::clamp(to_microsecond, 1e-6, kMaxReadoutTime);
     }
     if (camera.mask_path.empty()) continue;
     std::error_code code;  // the file that names it will lie elsewhere

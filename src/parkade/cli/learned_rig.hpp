@@ -16,7 +16,8 @@ namespace parkade::cli {
 /// folder that holds none.
 Result<std::string> rigFileOf(const std::string& path);
 
-/// The rig with its cameras where a drive has found them, how sure it is, and their clocks. told:
+/// The rig with its cameras where a drive has found them, how sure it is, their clocks and, of
+/// rolling shutters that are refined, their readout times. told:
 /// with the time offsets of its file; learned: one a camera (checked).
 Rig learnedRig(const Rig& told, const std::vector<CameraCalibrationEstimate>& learned);
 

@@ -48,6 +48,19 @@ TEST(LearnedRig, PlacesAndClocksAreThoseFoundAndMasksHaveFullPaths) {
   for (std::size_t c = 1; c < rig.cameras.size(); ++c) EXPECT_EQ(rig.cameras[c].mask_path, "");
 }
 
+TEST(LearnedRig, ReadoutTimesAreThoseFoundWhereTheyAreRefined) {
+  Rig told = test::smallRig();
+  for (RigCamera& camera : told.cameras) camera.readout_time = 0.1 / 3.0;
+  auto found = foundCameras(told);
+  for (auto& camera : found) camera.readout_time = 0.0300004;
+  found[0].sigma(7) = 1e-5;
+  const Rig rig = learnedRig(told, found);
+  EXPECT_EQ(rig.cameras[0].readout_time, 0.03);
+  EXPECT_EQ(rig.cameras[1].readout_time, told.cameras[1].readout_time);
+  EXPECT_EQ(calibrationJson(told.cameras[0], found[0])["readout_time_s"], 0.0300004);
+  EXPECT_FALSE(calibrationJson(test::smallRig().cameras[0], found[0]).contains("readout_time_s"));
+}
+
 TEST(LearnedRig, CalibrationTellsMovesAlongAndAboutTheVehiclesAxes) {
   const Rig told = test::smallRig();
   const nlohmann::json json = calibrationJson(told.cameras[0], foundCameras(told)[0]);

@@ -78,7 +78,8 @@ TextTable cameraTable(const Json& calibration) {
   table.note =
       "Against the rig file, along and about the vehicle's axes; sigma: of one axis. clock: added "
       "to "
-      "the stamps of its pictures it gives the inertial unit's time. rig.yaml holds the rig as "
+      "the stamps of its pictures it gives the inertial unit's time; readout: of a rolling "
+      "shutter, first row to last. rig.yaml holds the rig as "
       "found, "
       "for --rig.";
   return table;

@@ -107,10 +107,30 @@ std::string clockText(const Rig& rig, const std::vector<CameraCalibrationEstimat
                         1e3 * std::abs(offset), offset < 0.0 ? "late" : "early");
   }
   if (text.empty()) return text;
+  // What a rolling shutter does to rows looks like a clock that is off, to a part.
+  const bool told = std::any_of(rig.cameras.begin(), rig.cameras.end(),
+                                [](const RigCamera& camera) { return camera.readout_time > 0.0; });
   return fmt::format(
       "pictures are stamped {}, by the inertial unit's clock; --rig of the next drive "
-      "tells it from the start\n",
-      text);
+      "tells it from the start{}\n",
+      text, told ? "" : " (rolling shutters look so, too: tell their readout_time in rig.yaml)");
+}
+
+// Where rolling shutters take another time than the rig says; nothing where none does.
+std::string shutterText(const Rig& rig, const std::vector<CameraCalibrationEstimate>& cameras) {
+  constexpr double kNotable = 2e-3;  // s
+  constexpr double kSure = 5.0;      // sigmas
+  std::string text;
+  for (std::size_t c = 0; c < std::min(cameras.size(), rig.cameras.size()); ++c) {
+    const double found = cameras[c].readout_time;
+    const double told = rig.cameras[c].readout_time;
+    if (std::abs(found - told) < std::max(kNotable, kSure * cameras[c].sigma(7))) continue;
+    text += fmt::format("{}{} {:.1f} ms ({:.1f} told)", text.empty() ? "" : ", ",
+                        rig.cameras[c].name, 1e3 * found, 1e3 * told);
+  }
+  if (text.empty()) return text;
+  return fmt::format("rows are read in {}; --rig of the next drive tells it from the start\n",
+                     text);
 }
 
 // Where the inertial unit is not as told.
@@ -265,7 +285,9 @@ Status runSequence(RunArguments arguments) {
   fmt::print("{} frame sets, {} poses, {:.0f} tracks per frame set; wrote {}\n", summary.frame_sets,
              summary.poses, summary.mean_tracks, arguments.out);
   fmt::print("{}{}{}", troubleText(health, arguments.out),
-             clockText(opened->rig, (*run)->calibration()), inertialText(health.imuNoiseFactor()));
+             clockText(opened->rig, (*run)->calibration()) +
+                 shutterText(opened->rig, (*run)->calibration()),
+             inertialText(health.imuNoiseFactor()));
   if (!outcome) {
     return Error{fmt::format("{} (the poses up to there are in {})", outcome.error().message,
                              arguments.out)};

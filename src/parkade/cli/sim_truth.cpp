@@ -67,6 +67,7 @@ std::string specText(const sim::SimSpec& spec) {
   if (spec.one_way == 0.0) leave_out("one_way: 0\n");
   if (fixed.parked_seed == -1) leave_out("parked_seed: -1\n");
   if (spec.first_zone == "A") leave_out("first_zone: 'A'\n");
+  if (spec.readout_ms == 0.0) leave_out("readout_ms: 0\n");
   return text;
 }
 

@@ -74,7 +74,7 @@ std::string rigText(const Rig& rig) {
     const ViewDirection direction = viewDirection(c.T_vehicle_cam);
     const Eigen::Vector3d& p = c.T_vehicle_cam.translation();
     text += fmt::format(
-        "  {:<10} {:<20} {:>11} {:>12} {:>22} {:>7} {:>7} {:>7}{}{}{}\n", c.name,
+        "  {:<10} {:<20} {:>11} {:>12} {:>22} {:>7} {:>7} {:>7}{}{}{}{}\n", c.name,
         c.camera.modelName(), fmt::format("{} x {}", c.camera.width(), c.camera.height()),
         fmt::format("{:.0f} x {:.0f}", view.horizontal * kDegrees, view.vertical * kDegrees),
         fmt::format("{:.3f} {:.3f} {:.3f}", p.x(), p.y(), p.z()), degreesText(direction.yaw),
@@ -82,6 +82,8 @@ std::string rigText(const Rig& rig) {
         c.rate_hz > 0.0 ? fmt::format("  {:.4g} Hz", c.rate_hz) : "",
         c.time_offset_ns != 0 ? fmt::format("  offset {:.3f} ms", toSeconds(c.time_offset_ns) * 1e3)
                               : "",
+        c.readout_time > 0.0 ? fmt::format("  rolling shutter {:.4g} ms", 1e3 * c.readout_time)
+                             : "",
         c.mask_path.empty() ? "" : "  masked");
   }
   const Eigen::Vector3d& p = rig.imu.T_vehicle_imu.translation();
@@ -124,6 +126,7 @@ nlohmann::json rigJson(const Rig& rig) {
                        {"roll_deg", direction.roll * kDegrees},
                        {"rate_hz", c.rate_hz},
                        {"time_offset_ms", toSeconds(c.time_offset_ns) * 1e3},
+                       {"readout_time_ms", 1e3 * c.readout_time},
                        {"masked", !c.mask_path.empty()}});
   }
   nlohmann::json json = {{"name", rig.name},

@@ -254,22 +254,22 @@ void SemanticFrontEnd::placeCameras(const CamerasAtStamp& cameras) {
   constexpr double kStep = 1e-3;     // m
   Impl& m = *impl_;
   m.motion = cameras.motion();
-  const std::size_t count = std::min(cameras.T_vehicle_cam.size(), m.cameras.size());
-  for (std::size_t c = 0; c < count; ++c) {
-    const SE3& now = cameras.T_vehicle_cam[c];
+  for (std::size_t c = 0; c < m.cameras.size(); ++c) {
+    const bool known = c < cameras.T_vehicle_cam.size();
+    const SE3 now = known ? cameras.T_vehicle_cam[c] : m.cameras[c];
+    const bool moved = angleBetween(now.rotation(), m.cameras[c].rotation()) >= kTurn ||
+                       (now.translation() - m.cameras[c].translation()).norm() >= kStep;
     const int camera = static_cast<int>(c);
-    if (m.rig.cameras[c].readout_time > 0.0) {
-      m.rig.cameras[c].readout_time = std::max(1e-6, cameras.readout_time[c]);
+    const bool rolling = m.rig.cameras[c].readout_time > 0.0;
+    if (moved) {
+      m.cameras[c] = now;
+      m.stitcher.moveCamera(camera, now);
+    }
+    if (rolling && known) {
+      m.rig.cameras[c].readout_time = cameras.readout_time[c];
       m.stitcher.setReadoutTime(camera, cameras.readout_time[c]);
-      m.placeReaders(camera, now, cameras.twist);
     }
-    if (angleBetween(now.rotation(), m.cameras[c].rotation()) < kTurn &&
-        (now.translation() - m.cameras[c].translation()).norm() < kStep) {
-      continue;
-    }
-    m.cameras[c] = now;
-    m.stitcher.moveCamera(camera, now);
-    m.placeReaders(camera, now, cameras.twist);
+    if (moved || rolling) m.placeReaders(camera, now, cameras.twist);
   }
   m.renewSights();
 }

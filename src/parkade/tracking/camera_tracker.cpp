@@ -23,7 +23,7 @@ CameraTracker::CameraTracker(const RigCamera& camera, const TrackingOptions& opt
       static_mask_(validityMask(camera.camera)) {}
 
 void CameraTracker::setReadoutTime(double seconds) {
-  if (camera_.readout_time > 0.0 && seconds > 0.0) camera_.readout_time = seconds;
+  if (camera_.readout_time > 0.0) camera_.readout_time = seconds;
 }
 
 void CameraTracker::setMask(const cv::Mat& mask) {

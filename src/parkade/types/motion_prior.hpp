@@ -21,8 +21,8 @@ struct MotionPrior {
   SE3 T_previous_current;    ///< vehicle frame now, seen from the vehicle frame then
   /// Points of features by track id, in the vehicle frame of the previous frame set, m.
   std::unordered_map<std::uint64_t, Eigen::Vector3d> p_previous;
-  /// How long each camera's rolling shutter reads as far as known by now, s; empty: as the rig
-  /// says.
+  /// How long each camera's rolling shutter reads as far as known by now, s; empty: as told last,
+  /// at first by the rig.
   std::vector<double> readout_times;
 };
 

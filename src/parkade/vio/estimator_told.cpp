@@ -55,7 +55,7 @@ MotionPredictor VioEstimator::Impl::predictor() const {
     predictor.points_odom_.emplace_back(id, window_.pointOf(feature));
   }
   for (const VioCamera& camera : window_.cameras) {
-    predictor.readout_times_.push_back(camera.readout_time);
+    predictor.readout_times_.push_back(toldReadoutTime(camera));
   }
   return predictor;
 }
@@ -85,7 +85,7 @@ std::vector<CameraCalibrationEstimate> VioEstimator::Impl::calibration() const {
     CameraCalibrationEstimate estimate;
     estimate.T_vehicle_cam = T_vehicle_imu_ * window_.cameras[c].T_imu_cam;
     estimate.time_offset = window_.cameras[c].time_offset;
-    estimate.readout_time = window_.cameras[c].readout_time;
+    estimate.readout_time = toldReadoutTime(window_.cameras[c]);
     estimate.sigma = window_.refinements[c].sigma;
     if (initialised_ && global_covariance_.rows() == window_.globalSize()) {
       estimate.sigma =

@@ -109,7 +109,7 @@ struct VioCalibrationOptions {
   double position_sigma = 0.005;
   double rotation_sigma_deg = 0.1;
   double time_sigma = 0.005;
-  double readout_sigma = 0.005;
+  double readout_sigma = 0.015;
 
   void visit(OptionVisitor& v) {
     v.field("refine_extrinsics", refine_extrinsics,

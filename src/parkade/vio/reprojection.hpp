@@ -39,26 +39,15 @@ SE3 cameraPlace(const VioCamera& camera, const WindowFrame& frame,
 /// Where a landmark, given by direction and inverse distance in its anchor camera, appears in a
 /// target camera; docs/math/residuals.md, eq. (3). False where the camera cannot see it.
 ///
-/// T_imu_target: where the target camera sits, as cameraPlace() tells; without it as it sits at the
-/// frame's instant. The Jacobians of the motion are taken at the poses *_lin, those of the
-/// projection at the present point: a change of all poses by one motion of the odom frame then
-/// leaves them without effect at any state (first-estimate Jacobians;
-/// docs/math/marginalisation.md).
+/// T_imu_target: where the target camera sat, as cameraPlace() tells. The Jacobians of the motion
+/// are taken at the poses *_lin, those of the projection at the present point: a change of all
+/// poses by one motion of the odom frame then leaves them without effect at any state
+/// (first-estimate Jacobians; docs/math/marginalisation.md).
 bool reproject(const VioCamera& anchor_camera, const VioCamera& target_camera,
                const SE3& T_imu_target, const PoseMatrices& anchor, const PoseMatrices& target,
                const PoseMatrices& anchor_lin, const PoseMatrices& target_lin,
                const Eigen::Vector3d& direction, double inverse_distance, Eigen::Vector2d& pixel,
                ReprojectionJacobians* jacobians = nullptr,
                CameraJacobians* camera_jacobians = nullptr);
-inline bool reproject(const VioCamera& anchor_camera, const VioCamera& target_camera,
-                      const PoseMatrices& anchor, const PoseMatrices& target,
-                      const PoseMatrices& anchor_lin, const PoseMatrices& target_lin,
-                      const Eigen::Vector3d& direction, double inverse_distance,
-                      Eigen::Vector2d& pixel, ReprojectionJacobians* jacobians = nullptr,
-                      CameraJacobians* camera_jacobians = nullptr) {
-  return reproject(anchor_camera, target_camera, target_camera.T_imu_cam, anchor, target,
-                   anchor_lin, target_lin, direction, inverse_distance, pixel, jacobians,
-                   camera_jacobians);
-}
 
 }  // namespace parkade

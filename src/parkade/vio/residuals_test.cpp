@@ -66,14 +66,16 @@ TEST_P(ReprojectionJacobian, IsThatOfFiniteDifferences) {
     const Vector3d d =
         (direction + tangentBasis(direction) * Eigen::Vector2d(x(12), x(13))).normalized();
     Eigen::Vector2d pixel;
-    EXPECT_TRUE(reproject(anchor_camera, target_camera, a, t, a, t, d, rho + x(14), pixel));
+    EXPECT_TRUE(reproject(anchor_camera, target_camera, target_camera.T_imu_cam, a, t, a, t, d,
+                          rho + x(14), pixel));
     return Eigen::VectorXd(pixel);
   };
   const PoseMatrices a(anchor);
   const PoseMatrices t(target);
   Eigen::Vector2d pixel;
   ReprojectionJacobians j;
-  ASSERT_TRUE(reproject(anchor_camera, target_camera, a, t, a, t, direction, rho, pixel, &j));
+  ASSERT_TRUE(reproject(anchor_camera, target_camera, target_camera.T_imu_cam, a, t, a, t,
+                        direction, rho, pixel, &j));
   Eigen::MatrixXd analytic(2, 15);
   analytic << j.d_px_d_anchor, j.d_px_d_target, j.d_px_d_landmark;
   EXPECT_THAT(analytic, EigenMatrixNear(numericJacobian(pixelAt, Eigen::VectorXd::Zero(15)), 2e-5));
@@ -102,16 +104,16 @@ TEST_P(ReprojectionJacobian, ByTheCamerasIsThatOfFiniteDifferences) {
   };
   const auto pixelAt = [&](const Eigen::VectorXd& x) {
     Eigen::Vector2d pixel;
-    EXPECT_TRUE(reproject(moved_camera(anchor_camera, x.head<6>()),
-                          moved_camera(target_camera, x.tail<6>()), a, t, a, t, direction, 0.2,
-                          pixel));
+    const VioCamera moved_target = moved_camera(target_camera, x.tail<6>());
+    EXPECT_TRUE(reproject(moved_camera(anchor_camera, x.head<6>()), moved_target,
+                          moved_target.T_imu_cam, a, t, a, t, direction, 0.2, pixel));
     return Eigen::VectorXd(pixel);
   };
   Eigen::Vector2d pixel;
   ReprojectionJacobians j;
   CameraJacobians cameras;
-  ASSERT_TRUE(
-      reproject(anchor_camera, target_camera, a, t, a, t, direction, 0.2, pixel, &j, &cameras));
+  ASSERT_TRUE(reproject(anchor_camera, target_camera, target_camera.T_imu_cam, a, t, a, t,
+                        direction, 0.2, pixel, &j, &cameras));
   Eigen::MatrixXd analytic(2, 12);
   analytic << cameras.d_px_d_anchor_camera, cameras.d_px_d_target_camera;
   EXPECT_THAT(analytic, EigenMatrixNear(numericJacobian(pixelAt, Eigen::VectorXd::Zero(12)), 2e-5));
@@ -135,8 +137,8 @@ TEST(ReprojectionJacobian, FirstEstimatesLeaveACommonMotionWithoutEffect) {
   target.R_odom_imu = target.R_odom_imu * SO3::exp(draw(random, 0.05));
   Eigen::Vector2d pixel;
   ReprojectionJacobians j;
-  ASSERT_TRUE(reproject(camera, camera, PoseMatrices(anchor_lin), PoseMatrices(target),
-                        PoseMatrices(anchor_lin), PoseMatrices(target_lin),
+  ASSERT_TRUE(reproject(camera, camera, camera.T_imu_cam, PoseMatrices(anchor_lin),
+                        PoseMatrices(target), PoseMatrices(anchor_lin), PoseMatrices(target_lin),
                         Vector3d(0.1, -0.05, 1.0).normalized(), 0.3, pixel, &j));
   // A turn about the vertical through the origin moves positions and turns the bodies.
   const Vector3d up = Vector3d::UnitZ();

@@ -15,7 +15,8 @@
 
 namespace parkade {
 
-inline constexpr int kCalibration = 8;  ///< size of a camera's tangent
+inline constexpr double kLeastReadoutTime = 1e-6;  ///< s
+inline constexpr int kCalibration = 8;             ///< size of a camera's tangent
 using CalibrationVector = Eigen::Matrix<double, kCalibration, 1>;
 using CalibrationMatrix = Eigen::Matrix<double, kCalibration, kCalibration>;
 
@@ -26,6 +27,11 @@ struct VioCamera {
   double time_offset = 0.0;   ///< s; added to a stamp gives the time on the IMU's clock
   double readout_time = 0.0;  ///< s from the first row to the last (RigCamera)
 };
+
+/// A camera's readout time as others may use it: above zero with a rolling shutter, however noisy.
+inline double toldReadoutTime(const VioCamera& camera) {
+  return camera.readout_time < 0.0 ? kLeastReadoutTime : camera.readout_time;
+}
 
 /// What is known of a camera's calibration before any image, where it is refined online. Eight
 /// degrees of freedom: position (imu axes, m), rotation (right perturbation of R_imu_cam, rad),

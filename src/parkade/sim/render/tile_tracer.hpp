@@ -20,7 +20,8 @@ struct TileSamples {
 };
 
 /// Sends the rays of a camera at its places, tile by tile. The own car, which goes along, is met as
-/// from the middle row's; what else moves stands as at that row's time.
+/// from the middle row's (and lit as if it lay on the row's own ray, some centimetres off); what
+/// else moves stands as at that row's time.
 class TileTracer {
  public:
   /// The places must outlive it.
@@ -29,6 +30,7 @@ class TileTracer {
         table_(table),
         places_(places),
         floor_z_(setup.shader->floorHeight(places.eye())) {}
+  TileTracer(const FrameSetup& setup, const RayTable& table, CameraPlaces&& places) = delete;
 
   void trace(int tile, TileSamples& out) const { trace(tile, ~std::uint64_t{0}, out); }
   /// Only the packets that are asked for, a bit each.
