@@ -95,17 +95,29 @@ std::string troubleText(const HealthLog& health, const std::string& out) {
                      joinPath(out, "health.csv"));
 }
 
+constexpr double kNotableTime = 2e-3;  // s, by which a camera's clock or readout is off
+constexpr double kSure = 5.0;          // sigmas
+
+// What is to be told of the cameras, with commas between; nothing where all are as told.
+template <typename Tell>
+std::string ofCameras(const Rig& rig, const std::vector<CameraCalibrationEstimate>& found,
+                      const Tell& tell) {
+  std::string text;
+  for (std::size_t c = 0; c < std::min(found.size(), rig.cameras.size()); ++c) {
+    const std::string of_camera = tell(rig.cameras[c], found[c]);
+    if (!of_camera.empty()) text += (text.empty() ? "" : ", ") + of_camera;
+  }
+  return text;
+}
+
 // Where pictures are stamped wrongly; nothing where all are right.
 std::string clockText(const Rig& rig, const std::vector<CameraCalibrationEstimate>& cameras) {
-  constexpr double kNotable = 2e-3;  // s
-  constexpr double kSure = 5.0;      // sigmas
-  std::string text;
-  for (std::size_t c = 0; c < std::min(cameras.size(), rig.cameras.size()); ++c) {
-    const double offset = cameras[c].time_offset;
-    if (std::abs(offset) < std::max(kNotable, kSure * cameras[c].sigma(6))) continue;
-    text += fmt::format("{}{} {:.1f} ms {}", text.empty() ? "" : ", ", rig.cameras[c].name,
-                        1e3 * std::abs(offset), offset < 0.0 ? "late" : "early");
-  }
+  const std::string text = ofCameras(rig, cameras, [](const RigCamera& told, const auto& found) {
+    const double offset = found.time_offset;
+    if (std::abs(offset) < std::max(kNotableTime, kSure * found.sigma(6))) return std::string();
+    return fmt::format("{} {:.1f} ms {}", told.name, 1e3 * std::abs(offset),
+                       offset < 0.0 ? "late" : "early");
+  });
   if (text.empty()) return text;
   // What a rolling shutter does to rows looks like a clock that is off, to a part.
   const bool told = std::any_of(rig.cameras.begin(), rig.cameras.end(),
@@ -118,16 +130,12 @@ std::string clockText(const Rig& rig, const std::vector<CameraCalibrationEstimat
 
 // Where rolling shutters take another time than the rig says; nothing where none does.
 std::string shutterText(const Rig& rig, const std::vector<CameraCalibrationEstimate>& cameras) {
-  constexpr double kNotable = 2e-3;  // s
-  constexpr double kSure = 5.0;      // sigmas
-  std::string text;
-  for (std::size_t c = 0; c < std::min(cameras.size(), rig.cameras.size()); ++c) {
-    const double found = cameras[c].readout_time;
-    const double told = rig.cameras[c].readout_time;
-    if (std::abs(found - told) < std::max(kNotable, kSure * cameras[c].sigma(7))) continue;
-    text += fmt::format("{}{} {:.1f} ms ({:.1f} told)", text.empty() ? "" : ", ",
-                        rig.cameras[c].name, 1e3 * found, 1e3 * told);
-  }
+  const std::string text = ofCameras(rig, cameras, [](const RigCamera& told, const auto& found) {
+    const double off = std::abs(found.readout_time - told.readout_time);
+    if (off < std::max(kNotableTime, kSure * found.sigma(7))) return std::string();
+    return fmt::format("{} {:.1f} ms ({:.1f} told)", told.name, 1e3 * found.readout_time,
+                       1e3 * told.readout_time);
+  });
   if (text.empty()) return text;
   return fmt::format("rows are read in {}; --rig of the next drive tells it from the start\n",
                      text);
