@@ -53,12 +53,14 @@ Entry makeEntry(const RigCamera& rig_camera, const Eigen::Vector2d& ground, doub
   entry.d_pixel_d_attitude = d_pixel_d_vehicle * d_vehicle_d_attitude;
 
   // Equation (4b): until its row is read the point comes nearer by (v + w e_z x p) times that long.
-  Eigen::Matrix3d d_vehicle_d_motion;
-  d_vehicle_d_motion.col(0) = -Eigen::Vector3d::UnitX();
-  d_vehicle_d_motion.col(1) = -Eigen::Vector3d::UnitY();
-  d_vehicle_d_motion.col(2) = -Eigen::Vector3d::UnitZ().cross(p_ground);
-  entry.d_pixel_d_motion =
-      rig_camera.rowTime(entry.pixel.y()) * d_pixel_d_vehicle * d_vehicle_d_motion;
+  if (rig_camera.readout_time > 0.0) {
+    Eigen::Matrix3d d_vehicle_d_motion;
+    d_vehicle_d_motion.col(0) = -Eigen::Vector3d::UnitX();
+    d_vehicle_d_motion.col(1) = -Eigen::Vector3d::UnitY();
+    d_vehicle_d_motion.col(2) = -Eigen::Vector3d::UnitZ().cross(p_ground);
+    const double share = rowTimeOf(1.0, entry.pixel.y(), rig_camera.camera.height());
+    entry.d_pixel_d_motion = share * d_pixel_d_vehicle * d_vehicle_d_motion;
+  }
 
   // Equation (4): image pixels per metre along the line of sight fall with the square of the slant
   // range; the border fades over an eighth of the image's height.
@@ -91,7 +93,8 @@ cv::Mat reliefPicture(const GroundRelief& relief, const BevGeometry& geometry) {
 }
 
 GroundTable::GroundTable(const RigCamera& camera, const BevGeometry& geometry, double border_px,
-                         double max_range) {
+                         double max_range)
+    : readout_time_(camera.readout_time) {
   PARKADE_CHECK(geometry.width_px > 0 && geometry.height_px > 0 && geometry.metres_per_px > 0.0,
                 "bird's-eye picture of {} x {} at {} m", geometry.width_px, geometry.height_px,
                 geometry.metres_per_px);
@@ -172,9 +175,9 @@ void GroundTable::mapFor(const GroundAttitude& attitude, const cv::Mat& relief,
                          const GroundMotion& motion, cv::Mat& map_x, cv::Mat& map_y) const {
   const float change[3] = {static_cast<float>(attitude.pitch), static_cast<float>(attitude.roll),
                            static_cast<float>(attitude.height)};
-  const float going[3] = {static_cast<float>(motion.velocity.x()),
-                          static_cast<float>(motion.velocity.y()),
-                          static_cast<float>(motion.yaw_rate)};
+  const float going[3] = {static_cast<float>(readout_time_ * motion.velocity.x()),
+                          static_cast<float>(readout_time_ * motion.velocity.y()),
+                          static_cast<float>(readout_time_ * motion.yaw_rate)};
   cv::Mat* maps[2] = {&map_x, &map_y};
   for (int axis = 0; axis < 2; ++axis) {
     maps[axis]->create(roi_.size(), CV_32FC1);

@@ -37,6 +37,9 @@ class GroundTable {
   /// weight falls to 0 towards the body's outline, whose blurred edge is no ground either.
   void hide(const cv::Mat& mask);
 
+  /// A rolling shutter takes longer or less long than the camera was told to, s.
+  void setReadoutTime(double seconds) { readout_time_ = seconds; }
+
   /// Image points for an attitude, as cv::remap takes them: CV_32FC1 each, of roi()'s size; far
   /// outside the image where not covered. relief: reliefPicture() of the whole picture.
   /// motion: counts where the camera has a rolling shutter alone; ipm.md, eq. (4b).
@@ -48,7 +51,10 @@ class GroundTable {
   cv::Mat weight_;
   cv::Mat base_[2];           ///< image point at attitude zero: x, y
   cv::Mat derivative_[2][3];  ///< of x, y by pitch, roll, height
-  cv::Mat by_motion_[2][3];   ///< by velocity's x, y and yaw rate; empty where all rows are one
+  double readout_time_;       ///< s
+  /// Of x, y by velocity's x, y and yaw rate, per second of readout time; empty where there is
+  /// none.
+  cv::Mat by_motion_[2][3];
 };
 
 }  // namespace parkade

@@ -92,7 +92,6 @@ BevStitcher::BevStitcher(const Rig& rig, const BevOptions& options)
     : options_(options),
       rig_(rig),
       geometry_(makeGeometry(rig, options)),
-      readout_share_(rig.cameras.size(), 1.0),
       masks_(rig.cameras.size()),
       car_mask_(makeCarMask(rig, geometry_, options.car_margin_m)),
       log_gains_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rig.cameras.size()))),
@@ -121,10 +120,8 @@ void BevStitcher::setMask(int camera, const cv::Mat& mask) {
 }
 
 void BevStitcher::setReadoutTime(int camera, double seconds) {
-  tableOf(camera);  // checks
-  const auto index = static_cast<std::size_t>(camera);
-  const double told = rig_.cameras[index].readout_time;
-  if (told > 0.0) readout_share_[index] = seconds / told;
+  tableOf(camera).setReadoutTime(seconds);
+  rig_.cameras[static_cast<std::size_t>(camera)].readout_time = seconds;
 }
 
 void BevStitcher::moveCamera(int camera, const SE3& T_vehicle_cam) {
@@ -226,10 +223,7 @@ BevImage BevStitcher::stitch(const FrameSet& frames, const GroundAttitude& attit
                   "camera {}: {} channels", rig_.cameras[i].name, image.channels());
     channels = image.channels();
     if (tables_[i].roi().empty()) continue;
-    // How far the car comes goes with how long it takes.
-    const GroundMotion meanwhile{readout_share_[i] * motion.velocity,
-                                 readout_share_[i] * motion.yaw_rate};
-    tables_[i].mapFor(attitude, rise, meanwhile, map_x_, map_y_);
+    tables_[i].mapFor(attitude, rise, motion, map_x_, map_y_);
     cv::remap(image, warped_[i], map_x_, map_y_, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
   }
   BevImage result;

@@ -55,7 +55,7 @@ class BevStitcher {
   /// The camera sits elsewhere than the rig said; its mask stays.
   void moveCamera(int camera, const SE3& T_vehicle_cam);
 
-  /// Its rolling shutter takes longer or less long than the rig said, s; of no use to others.
+  /// A rolling shutter, as the rig says of the camera, takes longer or less long than told, s.
   void setReadoutTime(int camera, double seconds);
 
   /// Images must have the sizes of the rig's cameras and be all grey or all BGR (checked); empty
@@ -83,8 +83,7 @@ class BevStitcher {
   Rig rig_;
   BevGeometry geometry_;
   std::vector<GroundTable> tables_;
-  std::vector<double> readout_share_;  ///< of the readout times that the tables were made for
-  std::vector<cv::Mat> masks_;         ///< of the own body; empty: none
+  std::vector<cv::Mat> masks_;  ///< of the own body; empty: none
   std::vector<Overlap> overlaps_;
   cv::Mat car_mask_;  ///< 255 on the own car
   Eigen::VectorXd log_gains_;

@@ -292,10 +292,9 @@ Status runSequence(RunArguments arguments) {
   fmt::print("{}", timingTable(summary));
   fmt::print("{} frame sets, {} poses, {:.0f} tracks per frame set; wrote {}\n", summary.frame_sets,
              summary.poses, summary.mean_tracks, arguments.out);
-  fmt::print("{}{}{}", troubleText(health, arguments.out),
-             clockText(opened->rig, (*run)->calibration()) +
-                 shutterText(opened->rig, (*run)->calibration()),
-             inertialText(health.imuNoiseFactor()));
+  const std::vector<CameraCalibrationEstimate> found = (*run)->calibration();
+  fmt::print("{}{}{}{}", troubleText(health, arguments.out), clockText(opened->rig, found),
+             shutterText(opened->rig, found), inertialText(health.imuNoiseFactor()));
   if (!outcome) {
     return Error{fmt::format("{} (the poses up to there are in {})", outcome.error().message,
                              arguments.out)};

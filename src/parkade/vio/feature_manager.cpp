@@ -166,7 +166,9 @@ Observations FeatureManager::observationsOf(const std::vector<VioCamera>& camera
     o.camera = track.camera;
     o.pixel = track.pixel;
     o.sigma_px = std::max(track.sigma_px, 0.01);
-    o.row_share = rowTimeOf(1.0, track.pixel.y(), cameras[camera].camera.height());
+    if (cameras[camera].readout_time != 0.0) {
+      o.row_share = rowTimeOf(1.0, track.pixel.y(), cameras[camera].camera.height());
+    }
     if (!track.pixel.allFinite() || !cameras[camera].camera.unproject(track.pixel, o.ray)) continue;
     result.emplace_back(track.id, o);
   }

@@ -261,8 +261,7 @@ void LinearSystem::addFeature(const Window& window, WindowFeature& feature,
     j.d_px_d_anchor *= weight * root;
     j.d_px_d_target *= weight * root;
     if (refine) {
-      addCameras(cameras, observation, camera.readout_time != 0.0 ? observation.row_share : 0.0,
-                 weight * root, feature.anchor_camera, a, t, r, j, landmark);
+      addCameras(cameras, observation, weight * root, feature.anchor_camera, a, t, r, j, landmark);
     }
     if (t == a) continue;  // within one frame set the poses have no part
     coupling(a).noalias() += j.d_px_d_anchor.transpose() * j.d_px_d_landmark;
@@ -291,8 +290,8 @@ void LinearSystem::addFeature(const Window& window, WindowFeature& feature,
 
 // The terms of the two cameras' calibration in one observation; j's Jacobians are whitened.
 void LinearSystem::addCameras(const CameraJacobians& cameras, const WindowObservation& observation,
-                              double row_share, double weight, int anchor_camera, int anchor,
-                              int target, const Eigen::Vector2d& r, const ReprojectionJacobians& j,
+                              double weight, int anchor_camera, int anchor, int target,
+                              const Eigen::Vector2d& r, const ReprojectionJacobians& j,
                               LandmarkBlock& landmark) {
   struct Part {
     int camera;
@@ -303,7 +302,7 @@ void LinearSystem::addCameras(const CameraJacobians& cameras, const WindowObserv
   parts[0].J.leftCols<6>() = weight * cameras.d_px_d_anchor_camera;
   parts[1].J.leftCols<6>() = weight * cameras.d_px_d_target_camera;
   parts[1].J.col(6) = weight * observation.pixel_rate;
-  parts[1].J.col(7) = weight * row_share * observation.pixel_rate;
+  parts[1].J.col(7) = weight * observation.row_share * observation.pixel_rate;
   int count = 2;
   if (parts[0].camera == parts[1].camera) {
     parts[0].J += parts[1].J;

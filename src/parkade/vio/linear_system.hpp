@@ -95,9 +95,8 @@ class LinearSystem {
   void addStart(const Window& window, const WindowFrame& frame, int index);
   void addCalibration(const Window& window);
   void addFeature(const Window& window, WindowFeature& feature, double prior_information);
-  /// row_share: of the observation, 0 where the camera takes all rows at once.
   void addCameras(const CameraJacobians& cameras, const WindowObservation& observation,
-                  double row_share, double weight, int anchor_camera, int anchor, int target,
+                  double weight, int anchor_camera, int anchor, int target,
                   const Eigen::Vector2d& r, const ReprojectionJacobians& j,
                   LandmarkBlock& landmark);
   void reduceCameras(const LandmarkBlock& landmark, const Eigen::Vector3d& V_b);

@@ -123,7 +123,8 @@ struct WindowObservation {
   /// frame's velocity, for differences of pixels would correlate with their noise.
   Eigen::Vector2d pixel_rate = Eigen::Vector2d::Zero();
   double sigma_px = 1.0;
-  /// When its row is read, from -0.5 of the camera's readout time for the first row to 0.5.
+  /// When its row is read, from -0.5 of the camera's readout time for the first row to 0.5; 0 of
+  /// cameras that take all rows at once.
   double row_share = 0.0;
 };
 

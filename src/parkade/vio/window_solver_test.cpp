@@ -325,6 +325,12 @@ TEST_P(WindowGradient, IsThatOfTheCost) {
   std::vector<WindowFeature*> features;
   Window window = makeWindow(3, 0.5, features);
   if (GetParam()) {
+    for (auto& [id, feature] : window.features) {
+      for (WindowObservation& o : feature.observations) {
+        const VioCamera& camera = window.cameras[static_cast<std::size_t>(o.camera)];
+        o.row_share = rowTimeOf(1.0, o.pixel.y(), camera.camera.height());
+      }
+    }
     for (VioCamera& camera : window.cameras) {
       camera.readout_time = 0.01;
       CameraRefinement refinement;
